@@ -121,7 +121,10 @@ void BondForce::generalRow(BondState& state, int family, int k, double dt)
 			const Vec3 spins = spin.get(k, i) + spin.get(k2, i2);
 			shear += (0.5 * dt * spins.dot(n)) * n.cross(shear);
 
-			Vec3 relative = velocity.get(k2, i2) - velocity.get(k, i) - 0.5 * d * spins.cross(n);
+			// velocities belong to the middle of the step: with the branch of that moment a rigid rotation by an angle a leaves an error of a^3 only
+			Vec3       relative  = velocity.get(k2, i2) - velocity.get(k, i);
+			const Vec3 midBranch = branch - 0.5 * dt * relative;
+			relative -= 0.5 * spins.cross(midBranch);
 			relative -= relative.dot(n) * n;
 			shear += law.ks * dt * relative;
 		}
