@@ -119,7 +119,8 @@ void BondForce::generalRow(BondState& state, int family, int k, double dt)
 			const double left = shear.norm();
 			if (left > 0) shear *= size / left;
 			const Vec3 spins = spin.get(k, i) + spin.get(k2, i2);
-			shear += (0.5 * dt * spins.dot(n)) * n.cross(shear);
+			const double turn = 0.5 * dt * spins.dot(n);
+			shear             = std::cos(turn) * shear + std::sin(turn) * n.cross(shear);
 
 			// velocities belong to the middle of the step: with the branch of that moment a rigid rotation by an angle a leaves an error of a^3 only
 			Vec3       relative  = velocity.get(k2, i2) - velocity.get(k, i);

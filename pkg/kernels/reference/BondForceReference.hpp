@@ -42,7 +42,7 @@ inline void bondForces(const std::vector<std::array<int, 2>>& bonds, const BondL
 			const Vec3 vi   = p.velocity[i] + p.spin[i].cross(half);
 			const Vec3 vj   = p.velocity[j] + p.spin[j].cross(-half);
 			const Vec3 slide = (vj - vi) - n * n.dot(vj - vi);
-			shear            = carried + turn * n.cross(carried) + law.ks * slide * dt;
+			shear            = Eigen::AngleAxisd(turn, n) * carried + law.ks * slide * dt;
 		}
 
 		bool broken = !state.broken.empty() && state.broken[b];
