@@ -58,28 +58,30 @@ int specimenRows(const HexLatticeSpec& s, const HexLattice& l)
 	return rows;
 }
 
-void connect(HexLattice& l)
-{
-	const int n = l.perRing;
-	l.bonds.reserve(l.bondCount());
-	for (int family = 0; family < 3; ++family)
-		for (int k = 0; k < l.familyRows(family); ++k) {
-			const auto far = HexStencil::farEnd(family, k);
-			for (int i = 0; i < n; ++i)
-				l.bonds.push_back({ l.at(k, i), l.at(k + far[0], i + far[1]) });
-		}
+} // namespace
 
-	l.triangles.reserve(2 * n * (l.rings - 1));
-	for (int k = 0; k + 1 < l.rings; ++k)
-		for (int i = 0; i < n; ++i) {
-			// the upper right neighbour of (k, i) is the upper left one of (k, i + 1): it stands between them
-			const int above = i + HexStencil::right(k);
-			l.triangles.push_back({ l.at(k, i), l.at(k, i + 1), l.at(k + 1, above) });
-			l.triangles.push_back({ l.at(k, i + 1), l.at(k + 1, above + 1), l.at(k + 1, above) });
+std::vector<std::array<int, 2>> bondList(const HexStencil& tube)
+{
+	std::vector<std::array<int, 2>> bonds;
+	bonds.reserve(tube.bondCount());
+	for (int family = 0; family < 3; ++family)
+		for (int k = 0; k < tube.familyRows(family); ++k) {
+			const auto far = HexStencil::farEnd(family, k);
+			for (int i = 0; i < tube.perRing; ++i)
+				bonds.push_back({ tube.at(k, i), tube.at(k + far[0], i + far[1]) });
 		}
+	return bonds;
 }
 
-} // namespace
+void appendTriangles(const HexStencil& tube, int k, std::vector<std::array<int, 3>>& out)
+{
+	for (int i = 0; i < tube.perRing; ++i) {
+		// the upper right neighbour of (k, i) is the upper left one of (k, i + 1): it stands between them
+		const int above = i + HexStencil::right(k);
+		out.push_back({ tube.at(k, i), tube.at(k, i + 1), tube.at(k + 1, above) });
+		out.push_back({ tube.at(k, i + 1), tube.at(k + 1, above + 1), tube.at(k + 1, above) });
+	}
+}
 
 HexLattice makeHexLattice(const HexLatticeSpec& spec)
 {
@@ -102,7 +104,10 @@ HexLattice makeHexLattice(const HexLatticeSpec& spec)
 			l.groups.push_back(group);
 		}
 	}
-	connect(l);
+	l.bonds = bondList(l);
+	l.triangles.reserve(2 * n * (l.rings - 1));
+	for (int k = 0; k + 1 < l.rings; ++k)
+		appendTriangles(l, k, l.triangles);
 	return l;
 }
 

@@ -44,6 +44,12 @@ struct HexLattice : HexStencil {
 	std::vector<std::array<int, 2>> bonds;     ///< n (3 rings - 2), in the order of HexStencil
 };
 
+/// Triangles between ring k and the next, counter-clockwise seen from outside, appended to `out`.
+void appendTriangles(const HexStencil& tube, int k, std::vector<std::array<int, 3>>& out);
+
+/// All bonds as pairs, in the order of HexStencil.
+std::vector<std::array<int, 2>> bondList(const HexStencil& tube);
+
 /// Builds the lattice. Rows over the specimen: round((H - 2R)/h) + 1, centred at mid-height.
 /// \throws std::invalid_argument naming parameter, value and fix: non-finite or non-positive lengths, fewer than 6 spheres a ring, a specimen lower
 /// than one particle, negative row counts, platen rows of the two ends that leave no main body between them.

@@ -1,0 +1,256 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "HexMembrane.hpp"
+
+#include "kernels/Check.hpp"
+#include "kernels/PressureForce.hpp"
+#include "kernels/RadialForce.hpp"
+#include "kernels/SurfaceMeasure.hpp"
+
+#include <core/InteractionContainer.hpp>
+#include <pkg/common/NormShearPhys.hpp>
+#include <pkg/common/Sphere.hpp>
+#include <pkg/dem/ScGeom.hpp>
+
+namespace yade {
+
+YADE_PLUGIN((HexMembrane));
+CREATE_LOGGER(HexMembrane);
+
+static_assert(std::is_same<Vector3r, hexmembrane::Vec3>::value, "the kernels work in double precision: build against yade-double");
+
+namespace {
+
+const Scene& currentScene() { return *Omega::instance().getScene(); }
+
+bool innerFromName(const string& surface)
+{
+	if (surface != "inner" && surface != "centre") hexmembrane::reject("HexMembrane: surface", "'" + surface + "'", "unknown", "'inner' or 'centre'");
+	return surface == "inner";
+}
+
+} // namespace
+
+hexmembrane::HexLatticeSpec HexMembrane::spec() const
+{
+	return { specimenRadius, specimenHeight, particleRadius, hexmembrane::placementFromName(placement), oRingRows, platenRows };
+}
+
+void HexMembrane::checkGrain(Real radius) const
+{
+	if (math::isnan(smallestGrain)) return;
+	hexmembrane::requirePositive("HexMembrane.smallestGrain", smallestGrain, "m");
+	const Real largest = hexmembrane::largestMembraneRadius(smallestGrain);
+	if (radius <= largest) return;
+	const string wrong = "too coarse for grains of radius " + hexmembrane::formatNumber(smallestGrain) + " m, they pass between three spheres (Eq. 1)";
+	const string fix   = "at most " + hexmembrane::formatNumber(largest) + " m, or allowCoarse=True";
+	if (!allowCoarse) hexmembrane::reject("HexMembrane.particleRadius", radius, wrong, fix);
+	LOG_WARN("HexMembrane.particleRadius = " << radius << ": " << wrong << "; allowed by allowCoarse (limit " << largest << " m)");
+}
+
+vector<Body::id_t> HexMembrane::generate()
+{
+	if (!ids.empty())
+		hexmembrane::reject("HexMembrane.ids", static_cast<int>(ids.size()), "the membrane has been generated already", "make a new HexMembrane for a second one");
+	const hexmembrane::HexLattice lattice = hexmembrane::makeHexLattice(spec());
+	checkGrain(lattice.sphereRadius);
+	for (int a = 0; a < 3; ++a)
+		hexmembrane::requireFinite("HexMembrane.origin", origin[a], "m");
+	const shared_ptr<Scene>& scene = Omega::instance().getScene();
+	if (!material) {
+		if (scene->materials.empty())
+			hexmembrane::reject("HexMembrane.material", string("None"), "the scene has no material to take",
+			                    "O.materials.append(FrictMat(frictionAngle=0)) first, or give one");
+		material = scene->materials.back();
+	}
+	const Real rho = math::isnan(density) ? material->density : density;
+	hexmembrane::requirePositive("HexMembrane.density", rho, "kg/m3");
+
+	const Real r = lattice.sphereRadius, mass = rho * 4. / 3 * M_PI * r * r * r;
+	for (int p = 0; p < lattice.particles(); ++p) {
+		shared_ptr<Sphere> sphere(new Sphere);
+		sphere->radius   = r;
+		sphere->color    = color;
+		shared_ptr<Body> particle(new Body);
+		particle->shape  = sphere;
+		particle->material       = material;
+		particle->groupMask      = mask;
+		particle->state          = material->newAssocState();
+		particle->state->pos     = particle->state->refPos = origin + lattice.positions[p];
+		particle->state->mass    = mass;
+		particle->state->inertia = Vector3r::Constant(.4 * mass * r * r);
+		if (lattice.groups[p] == 1) particle->state->blockedDOFs = State::DOF_ALL;
+		else if (!rotations)
+			particle->state->blockedDOFs = State::DOF_RXRYRZ;
+		ids.push_back(scene->bodies->insert(particle));
+	}
+	perRing      = lattice.perRing;
+	rings        = lattice.rings;
+	sphereRadius = r;
+	centreRadius = lattice.centreRadius;
+	innerRadius  = lattice.innerRadius;
+	ringSpacing  = lattice.ringSpacing;
+	return ids;
+}
+
+void HexMembrane::requireGenerated(const string& who) const
+{
+	if (ids.empty()) throw std::runtime_error(who + ": the membrane has no particles; fix: call its generate() first");
+}
+
+int HexMembrane::groupOfRing(int k) const
+{
+	const int fromEnd = std::min(k, rings - 1 - k);
+	return fromEnd < oRingRows ? 1 : fromEnd < oRingRows + platenRows ? 2 : 3;
+}
+
+const shared_ptr<Body>& HexMembrane::body(const Scene& scene, int index, const string& who) const
+{
+	const Body::id_t id = ids[index];
+	if (id >= static_cast<Body::id_t>(scene.bodies->size()) || !(*scene.bodies)[id])
+		throw std::runtime_error(
+		        who + ": body " + std::to_string(id) + " of the membrane is gone (iteration " + std::to_string(scene.iter)
+		        + "); fix: do not erase membrane bodies, or load the last checkpoint");
+	return (*scene.bodies)[id];
+}
+
+void HexMembrane::gather(const Scene& scene, const string& who, vector<Vector3r>& x) const
+{
+	requireGenerated(who);
+	x.resize(ids.size());
+	const int count   = static_cast<int>(ids.size());
+	int       missing = -1;
+#pragma omp parallel for schedule(static)
+	for (int i = 0; i < count; ++i) {
+		const Body::id_t id = ids[i];
+		const Body*      b  = id < static_cast<Body::id_t>(scene.bodies->size()) ? (*scene.bodies)[id].get() : nullptr;
+		if (b) x[i] = b->state->pos;
+		else
+#pragma omp critical
+			missing = i;
+	}
+	if (missing >= 0) body(scene, missing, who); // throws
+}
+
+vector<std::array<int, 3>> HexMembrane::triangleList() const
+{
+	vector<std::array<int, 3>> list;
+	const auto                 tube = stencil();
+	list.reserve(2 * perRing * (rings - 1));
+	for (int k = 0; k + 1 < rings; ++k)
+		hexmembrane::appendTriangles(tube, k, list);
+	return list;
+}
+
+vector<int> HexMembrane::groups_get() const
+{
+	requireGenerated("HexMembrane.groups");
+	vector<int> g;
+	for (int k = 0; k < rings; ++k)
+		g.insert(g.end(), perRing, groupOfRing(k));
+	return g;
+}
+
+vector<Vector3i> HexMembrane::triangles_get() const
+{
+	requireGenerated("HexMembrane.triangles");
+	vector<Vector3i> out;
+	for (const auto& t : triangleList())
+		out.emplace_back(t[0], t[1], t[2]);
+	return out;
+}
+
+vector<Vector2i> HexMembrane::bonds_get() const
+{
+	requireGenerated("HexMembrane.bonds");
+	vector<Vector2i> out;
+	for (const auto& b : hexmembrane::bondList(stencil()))
+		out.emplace_back(b[0], b[1]);
+	return out;
+}
+
+vector<Vector3r> HexMembrane::positions_get() const
+{
+	vector<Vector3r> x;
+	gather(currentScene(), "HexMembrane.positions", x);
+	return x;
+}
+
+vector<Vector3r> HexMembrane::surfacePoints(const string& surface) const
+{
+	vector<Vector3r> x = positions_get();
+	if (!innerFromName(surface)) return x;
+	hexmembrane::PressureForce mesh(hexmembrane::TriangleMesh(static_cast<int>(x.size()), triangleList()), 0.);
+	vector<Vector3r>           unused, normals;
+	mesh.compute(0., x, unused);
+	mesh.vertexNormals(normals);
+	for (size_t i = 0; i < x.size(); ++i)
+		x[i] -= sphereRadius * normals[i];
+	return x;
+}
+
+Real HexMembrane::surfaceArea(const string& surface, Real zBottom, Real zTop) const
+{
+	constexpr Real inf = std::numeric_limits<Real>::infinity();
+	return hexmembrane::measureTube(triangleList(), surfacePoints(surface), math::isnan(zBottom) ? -inf : zBottom, math::isnan(zTop) ? inf : zTop).area;
+}
+
+Real HexMembrane::enclosedVolume(Real zBottom, Real zTop, const string& surface) const
+{
+	constexpr Real inf = std::numeric_limits<Real>::infinity();
+	return hexmembrane::measureTube(triangleList(), surfacePoints(surface), math::isnan(zBottom) ? -inf : zBottom, math::isnan(zTop) ? inf : zTop).volume;
+}
+
+Real HexMembrane::meanRadius(Real zBottom, Real zTop, const string& surface) const
+{
+	const bool       inner = innerFromName(surface);
+	vector<Vector3r> x     = positions_get();
+	Real             sum   = 0;
+	int              count = 0;
+	for (int k = 0; k < rings; ++k) {
+		const auto shape = hexmembrane::ringShape(stencil(), x, k);
+		if (shape.centre[2] < zBottom || shape.centre[2] > zTop) continue; // false for NaN
+		sum += shape.radius;
+		++count;
+	}
+	if (count == 0)
+		throw std::runtime_error("HexMembrane.meanRadius: no ring between zBottom = " + hexmembrane::formatNumber(zBottom) + " and zTop = "
+		                         + hexmembrane::formatNumber(zTop) + " m; fix: give the heights of the platens' faces");
+	return sum / count - (inner ? sphereRadius : 0.);
+}
+
+Real HexMembrane::transmittedPressure(int group) const
+{
+	if (group != 0 && group != 2 && group != 3)
+		hexmembrane::reject("HexMembrane.transmittedPressure: group", group, "no pressure is transmitted there", "0 (groups 2 and 3), 2 or 3");
+	const Scene&     scene = currentScene();
+	vector<Vector3r> x     = positions_get(), unused, normals;
+	vector<Real>     areas;
+
+	hexmembrane::PressureForce mesh(hexmembrane::TriangleMesh(static_cast<int>(x.size()), triangleList()), sphereRadius);
+	mesh.compute(0., x, unused);
+	mesh.vertexNormals(normals);
+	mesh.vertexAreas(areas);
+
+	const std::set<Body::id_t> own(ids.begin(), ids.end());
+	Real                       force = 0, area = 0;
+	for (int i = 0; i < static_cast<int>(ids.size()); ++i) {
+		const int g = groupOfRing(i / perRing);
+		if (g == 1 || (group != 0 && g != group)) continue;
+		area += areas[i];
+		for (const auto& entry : body(scene, i, "HexMembrane.transmittedPressure")->intrs) {
+			const Interaction& contact = *entry.second;
+			if (!contact.isReal() || own.count(entry.first)) continue;
+			const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
+			if (!phys) continue;
+			// YADE's laws apply +normalForce to the second body
+			const Vector3r onOther = contact.getId1() == ids[i] ? phys->normalForce : Vector3r(-phys->normalForce);
+			force -= onOther.dot(normals[i]);
+		}
+	}
+	if (area <= 0)
+		throw std::runtime_error(
+		        "HexMembrane.transmittedPressure: group " + std::to_string(group) + " has no area; fix: platenRows > 0 when the membrane is generated");
+	return force / area;
+}
+
+} // namespace yade

@@ -1,0 +1,97 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <core/Body.hpp>
+#include <core/Material.hpp>
+#include <core/Scene.hpp>
+#include <lib/serialization/Serializable.hpp>
+
+#include "kernels/HexLattice.hpp"
+
+namespace yade {
+
+/*! The membrane as a set of ordinary sphere bodies plus what is known of their arrangement. The engines of this folder share one of these. */
+class HexMembrane : public Serializable {
+public:
+	//! Appends the bodies to the current scene. Nothing is appended when anything is wrong.
+	vector<Body::id_t> generate();
+
+	//! Throws unless generate() has run; `who` asks.
+	void requireGenerated(const string& who) const;
+	//! Connectivity for the kernels.
+	hexmembrane::HexStencil stencil() const { return { perRing, rings }; }
+	//! Group (1, 2 or 3) of ring k.
+	int groupOfRing(int k) const;
+
+	//! Present centres of all particles. Throws when a body is gone; `who` asks.
+	void gather(const Scene& scene, const string& who, vector<Vector3r>& positions) const;
+	//! A body of the membrane. Throws when it is gone.
+	const shared_ptr<Body>& body(const Scene& scene, int index, const string& who) const;
+	//! All triangles as local indices.
+	vector<std::array<int, 3>> triangleList() const;
+
+	//! Mean pressure (Pa) that the particles of a group (0: all) press on bodies which are not of the membrane.
+	Real transmittedPressure(int group) const;
+
+	// Python-facing
+	vector<int>      groups_get() const;
+	vector<Vector3i> triangles_get() const;
+	vector<Vector2i> bonds_get() const;
+	vector<Vector3r> positions_get() const;
+	Real             surfaceArea(const string& surface, Real zBottom, Real zTop) const;
+	Real             enclosedVolume(Real zBottom, Real zTop, const string& surface) const;
+	Real             meanRadius(Real zBottom, Real zTop, const string& surface) const;
+
+private:
+	hexmembrane::HexLatticeSpec spec() const;
+	void                        checkGrain(Real sphereRadius) const;
+	//! Centres, or the points one radius further in along the vertex normals.
+	vector<Vector3r> surfacePoints(const string& surface) const;
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(HexMembrane,Serializable,
+		"A flexible membrane: hexagonal rings of equal spheres round an upright cylindrical specimen. :yref:`generate<HexMembrane.generate>` appends them as ordinary :yref:`Sphere` bodies; "
+		":yref:`MembraneBonds`, :yref:`MembranePressure`, :yref:`MembraneRadialServo` and :yref:`MembraneORings` act on them.\n\n"
+		"Whole numbers of touching spheres close each ring exactly, and rings stand at the stress-free distance $2R\\sqrt{1-1/(4\\cos^2(\\pi/2n))}$, so that every neighbour is $2R$ away and the generated membrane is free of stress. "
+		"Row groups as in the source study: 1 O-ring rows beyond the specimen's ends, 2 rows beside the platens, 3 the main body.\n\n"
+		"Membrane spheres must not collide with each other: give them a :yref:`mask<HexMembrane.mask>` and set it as :yref:`Collider.avoidSelfInteractionMask`. A frictionless material is usual (friction 0 in the source study).\n\n"
+		"Errors (``ValueError``, nothing appended): sizes that are missing, negative, NaN; a membrane too coarse to close (fewer than 6 spheres a ring) or, with :yref:`smallestGrain<HexMembrane.smallestGrain>`, too coarse to hold the grains (Eq. 1); group rows that overlap.\n\n"
+		"Example::\n\n\tmembrane=HexMembrane(specimenRadius=.02,specimenHeight=.08,particleRadius=.001)\n\tids=membrane.generate()",
+		((Real,specimenRadius,NaN,,"Radius of the specimen [m]. Required."))
+		((Real,specimenHeight,NaN,,"Height of the specimen [m]. Required."))
+		((Real,particleRadius,NaN,,"Wanted radius $R$ of the membrane's spheres [m]. Required. See :yref:`sphereRadius<HexMembrane.sphereRadius>` for the one that closes the ring."))
+		((Vector3r,origin,Vector3r::Zero(),,"Centre of the specimen's lower end [m]; the axis points along z."))
+		((string,placement,"outside",,"'outside': the membrane's inner surface touches the specimen, the sphere radius is fitted to it. 'centred': sphere centres on the specimen's surface (the source study), the radius is kept and the ring's follows, $R/\\sin(\\pi/n)$."))
+		((int,oRingRows,2,,"Rows beyond each end of the specimen (group 1) [-]."))
+		((int,platenRows,2,,"Rows at each end of the specimen, beside the platens (group 2) [-]."))
+		((Real,smallestGrain,NaN,,"Radius of the smallest grain $r$ [m]. When given, $R\\leq 3/(2\\sqrt 3-3)\\,r$ is required (Eq. 1: no grain through a gap of three touching spheres)."))
+		((bool,allowCoarse,false,,"Turn a violation of Eq. 1 into a warning."))
+		((bool,rotations,false,,"Leave the spheres free to rotate. Off: their spins are blocked, as central bonds ($k_s=0$) and a frictionless surface need none. Bonds with $k_s>0$ require it."))
+		((Real,density,NaN,,"Density of the spheres [kg/m³]; NaN: that of the material."))
+		((shared_ptr<Material>,material,,,"Material of the spheres; the last of ``O.materials`` when not given."))
+		((int,mask,1,,":yref:`Body.mask` of the spheres."))
+		((Vector3r,color,Vector3r(.35,.55,.8),,"Color of the spheres."))
+		((vector<Body::id_t>,ids,,Attr::readonly,"Ids of the bodies, ring by ring from the bottom: particle *i* of ring *k* at *k* perRing + *i*."))
+		((int,perRing,0,Attr::readonly,"Spheres a ring."))
+		((int,rings,0,Attr::readonly,"Number of rings, O-ring rows included."))
+		((Real,sphereRadius,NaN,Attr::readonly,"Radius of the spheres [m]; with 'outside' within 1/(2 perRing) of particleRadius, with 'centred' equal to it."))
+		((Real,centreRadius,NaN,Attr::readonly,"Radius of the cylinder through the generated centres [m]."))
+		((Real,innerRadius,NaN,Attr::readonly,"Radius of the generated inner surface, centreRadius - sphereRadius [m]."))
+		((Real,ringSpacing,NaN,Attr::readonly,"Distance of neighbouring rings when generated [m]."))
+		,/*ctor*/,
+		.def("generate",&HexMembrane::generate,"Append the bodies to the current scene and return their ids. Once only.")
+		.add_property("groups",&HexMembrane::groups_get,"Group of each particle: 1 O-ring, 2 beside a platen, 3 main body.")
+		.add_property("triangles",&HexMembrane::triangles_get,"Triangles of neighbouring particles as indices into :yref:`ids<HexMembrane.ids>`, counter-clockwise seen from outside.")
+		.add_property("bonds",&HexMembrane::bonds_get,"Pairs of bonded particles as indices into :yref:`ids<HexMembrane.ids>`.")
+		.add_property("positions",&HexMembrane::positions_get,"Present centres [m].")
+		.def("surfaceArea",&HexMembrane::surfaceArea,(boost::python::arg("surface")="inner",boost::python::arg("zBottom")=NaN,boost::python::arg("zTop")=NaN),"Present area [m²] of the 'inner' surface or of that through the 'centre's, between two heights (NaN: to the end rings).")
+		.def("enclosedVolume",&HexMembrane::enclosedVolume,(boost::python::arg("zBottom")=NaN,boost::python::arg("zTop")=NaN,boost::python::arg("surface")="inner"),"Present volume [m³] enclosed by the membrane's 'inner' (or 'centre') surface and horizontal planes at two heights, the platens' faces (NaN: at the end rings).")
+		.def("meanRadius",&HexMembrane::meanRadius,(boost::python::arg("zBottom")=NaN,boost::python::arg("zTop")=NaN,boost::python::arg("surface")="inner"),"Present mean distance [m] of the particles from their ring's centroid, rings between two heights (for Eq. 6); 'inner': less the sphere radius.")
+		.def("transmittedPressure",&HexMembrane::transmittedPressure,(boost::python::arg("group")=0),"Pressure [Pa] that arrives: sum of the normal contact forces on all other bodies (grains, platens' sides), each taken along the inward vertex normal of the membrane, over the present inner area of the particles of a group (0: all of groups 2 and 3). Positive presses inwards. From the contacts of the last step.")
+	);
+	// clang-format on
+	DECLARE_LOGGER;
+};
+REGISTER_SERIALIZABLE(HexMembrane);
+
+} // namespace yade

@@ -1,0 +1,155 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "MembraneBonds.hpp"
+
+#include "Scatter.hpp"
+#include "kernels/Check.hpp"
+#include "kernels/LatticeConstants.hpp"
+
+namespace yade {
+
+YADE_PLUGIN((MembraneBonds));
+
+namespace {
+
+bool same(const hexmembrane::BondLaw& a, const hexmembrane::BondLaw& b)
+{
+	return a.kn == b.kn && a.ks == b.ks && a.tensileStrength == b.tensileStrength && a.shearStrength == b.shearStrength && a.friction == b.friction
+	        && a.tensionOnly == b.tensionOnly;
+}
+
+} // namespace
+
+hexmembrane::BondLaw MembraneBonds::law() const
+{
+	hexmembrane::BondLaw l { kn, math::isnan(ks) ? 0. : ks, tensileStrength, shearStrength, friction, tensionOnly };
+	const bool           sheet = !math::isnan(young) || !math::isnan(thickness) || !math::isnan(poisson);
+	if (sheet && !(math::isnan(kn) && math::isnan(ks)))
+		hexmembrane::reject("MembraneBonds.kn", kn, "stiffness is given twice, as springs and as a sheet", "either kn and ks, or young, thickness and poisson");
+	if (sheet) {
+		hexmembrane::requirePositive("MembraneBonds.young", young, "Pa");
+		hexmembrane::requirePositive("MembraneBonds.thickness", thickness, "m");
+		const auto springs = hexmembrane::bondsFromSheet({ young * thickness, poisson });
+		l.kn               = springs.normal;
+		l.ks               = springs.shear;
+	}
+	l.check();
+	return l;
+}
+
+void MembraneBonds::prepare()
+{
+	if (!membrane) throw std::runtime_error("MembraneBonds.membrane = None: no membrane to act on; fix: MembraneBonds(membrane=HexMembrane(...))");
+	membrane->requireGenerated("MembraneBonds");
+	const hexmembrane::BondLaw wanted = law();
+	if (kernel && builtFor == membrane.get() && same(wanted, built)) return;
+	if (wanted.ks > 0 && !membrane->rotations)
+		hexmembrane::reject("MembraneBonds.ks", wanted.ks, "shear needs particles that rotate, the membrane was made without",
+		                    "HexMembrane(rotations=True), or ks = 0 (poisson = 1/3)");
+	const size_t bonds = membrane->stencil().bondCount();
+	if ((!broken.empty() && broken.size() != bonds) || (!shearForces.empty() && shearForces.size() != bonds))
+		throw std::runtime_error("MembraneBonds: the stored state of " + std::to_string(std::max(broken.size(), shearForces.size())) + " bonds does not fit a membrane of "
+		                         + std::to_string(bonds) + "; fix: a new MembraneBonds for another membrane");
+	kernel.reset(new hexmembrane::BondForce(membrane->stencil(), wanted));
+	state.restLength.assign(bonds, 2 * membrane->sphereRadius);
+	built    = wanted;
+	builtFor = membrane.get();
+}
+
+void MembraneBonds::gatherRing(int k, vector<int>& missing)
+{
+	const int   n        = membrane->perRing;
+	const bool  rotating = built.ks > 0;
+	const auto& bodies   = *scene->bodies;
+	for (int i = 0; i < n; ++i) {
+		const Body* b = livingBody(bodies, membrane->ids[k * n + i]);
+		if (!b) {
+			missing[k] = k * n + i;
+			return;
+		}
+		kernel->position.set(k, i, b->state->pos);
+		if (!rotating) continue;
+		kernel->velocity.set(k, i, b->state->vel);
+		kernel->spin.set(k, i, b->state->angVel);
+	}
+	kernel->position.wrap(k);
+	if (!rotating) return;
+	kernel->velocity.wrap(k);
+	kernel->spin.wrap(k);
+}
+
+void MembraneBonds::scatterRing(int k, vector<int>& bad)
+{
+	const int n = membrane->perRing;
+	for (int i = 0; i < n; ++i) {
+		const Vector3r f = kernel->force.get(k, i);
+		if (!isFinite(f)) bad[k] = k * n + i;
+		scene->forces.addForce(membrane->ids[k * n + i], f);
+		if (built.ks > 0) scene->forces.addTorque(membrane->ids[k * n + i], kernel->torque.get(k, i));
+	}
+}
+
+void MembraneBonds::action()
+{
+	prepare();
+	// one slot a ring for what goes wrong: exceptions must not leave a parallel loop
+	vector<int> missing(membrane->rings, -1), bad(membrane->rings, -1);
+#pragma omp parallel for schedule(static)
+	for (int k = 0; k < membrane->rings; ++k)
+		gatherRing(k, missing);
+	for (int m : missing)
+		if (m >= 0) membrane->body(*scene, m, "MembraneBonds"); // throws
+
+	// the saved attributes are the state: lent to the kernel for the step
+	state.shear.swap(shearForces);
+	state.broken.swap(broken);
+	kernel->compute(state, scene->dt);
+	state.shear.swap(shearForces);
+	state.broken.swap(broken);
+
+#pragma omp parallel for schedule(static)
+	for (int k = 0; k < membrane->rings; ++k)
+		scatterRing(k, bad);
+	for (int b : bad)
+		if (b >= 0) throwNotFinite("MembraneBonds: bond force", membrane->ids[b], *scene);
+	if (scene->trackEnergy) scene->energy->add(elasticEnergy(), "elastMembrane", energyIndex, /*reset*/ true);
+}
+
+void MembraneBonds::requireStepped(const char* what) const
+{
+	if (!kernel) throw std::runtime_error(string("MembraneBonds.") + what + ": nothing computed yet; fix: run a step first");
+}
+
+Real MembraneBonds::elasticEnergy()
+{
+	requireStepped("elasticEnergy");
+	state.shear.swap(shearForces);
+	state.broken.swap(broken);
+	const Real energy = kernel->energy(state);
+	state.shear.swap(shearForces);
+	state.broken.swap(broken);
+	return energy;
+}
+
+vector<Real> MembraneBonds::normalForces()
+{
+	requireStepped("normalForces");
+	vector<Real> forces(membrane->stencil().bondCount());
+	state.broken.swap(broken);
+	for (size_t b = 0; b < forces.size(); ++b)
+		forces[b] = kernel->normalForce(state, static_cast<int>(b));
+	state.broken.swap(broken);
+	return forces;
+}
+
+Real MembraneBonds::criticalTimeStep() const
+{
+	const auto l = law();
+	if (!membrane) throw std::runtime_error("MembraneBonds.membrane = None: no membrane to act on; fix: MembraneBonds(membrane=HexMembrane(...))");
+	membrane->requireGenerated("MembraneBonds.criticalTimeStep");
+	const Real mass = membrane->body(*Omega::instance().getScene(), 0, "MembraneBonds.criticalTimeStep")->state->mass;
+	return 2 * math::sqrt(mass / (6 * (l.kn + l.ks)));
+}
+
+int MembraneBonds::brokenCount() const { return static_cast<int>(std::count(broken.begin(), broken.end(), 1)); }
+
+} // namespace yade

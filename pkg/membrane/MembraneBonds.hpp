@@ -1,0 +1,72 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "HexMembrane.hpp"
+
+#include "kernels/BondForce.hpp"
+
+#include <core/GlobalEngine.hpp>
+
+#include <memory>
+
+namespace yade {
+
+/*! The membrane's own mechanics over flat arrays: gathers the particles once a step, runs the bond kernel, adds the forces. */
+class MembraneBonds : public GlobalEngine {
+public:
+	void action() override;
+
+	Real         elasticEnergy();
+	Real         criticalTimeStep() const;
+	vector<Real> normalForces();
+	int          brokenCount() const;
+
+private:
+	hexmembrane::BondLaw law() const;
+	void                 prepare();
+	void                 gatherRing(int k, vector<int>& missing);
+	void                 scatterRing(int k, vector<int>& bad);
+	void                 requireStepped(const char* what) const;
+
+	// Caches: rebuilt from the attributes when they are missing or other than when they were built.
+	std::unique_ptr<hexmembrane::BondForce> kernel;
+	hexmembrane::BondLaw                    built;
+	const HexMembrane*                      builtFor = nullptr;
+	hexmembrane::BondState                  state;
+	int                                     energyIndex = -1;
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneBonds,GlobalEngine,
+		"Bonds between the six neighbours of every particle of a :yref:`HexMembrane`, without Interaction objects. Stands before :yref:`NewtonIntegrator`.\n\n"
+		"Normal force $N=k_n(d-L_0)$, tension positive, about the generated distance $L_0=2R$; with $k_s>0$ an incremental shear force that includes both spins. "
+		"Stiffness either directly as kn and ks, or as young, thickness and poisson of the sheet through the lattice's closed form "
+		"$Et=2\\sqrt 3 k_n(k_n+k_s)/(3k_n+k_s)$, $\\nu=(k_n-k_s)/(3k_n+k_s)$; $\\nu$ lies in [0, 1/3], rubber's 0.5 cannot be had by any such lattice. "
+		"With $k_s=0$ ($\\nu=1/3$) rotations are neither needed nor computed.\n\n"
+		"Strengths are PFC's linear contact bond: a bond whose tension exceeds tensileStrength loses both forces; one whose shear exceeds shearStrength keeps what friction holds in compression; a broken bond carries compression only. "
+		"With :yref:`O.trackEnergy<Omega.trackEnergy>` the elastic energy is entered as 'elastMembrane'.\n\n"
+		"The membrane has no bending stiffness and no thickness change. Forces are the same to the last bit for any number of threads; the sums over contacts that they are added to are not.\n\n"
+		"Errors: ``ValueError`` for parameters, ``RuntimeError`` for a membrane not generated, a body erased, a force that is not finite (with body id and iteration).\n\n"
+		"Example::\n\n\tMembraneBonds(membrane=m,young=1.4e6,thickness=.3e-3,poisson=1/3.)",
+		((shared_ptr<HexMembrane>,membrane,,,"The membrane. Required."))
+		((Real,kn,NaN,,"Normal stiffness of a bond [N/m], with :yref:`ks<MembraneBonds.ks>`; or give young, thickness, poisson."))
+		((Real,ks,NaN,,"Shear stiffness of a bond [N/m]; NaN with kn given: 0."))
+		((Real,young,NaN,,"Young's modulus $E$ of the sheet [Pa]."))
+		((Real,thickness,NaN,,"Thickness $t$ of the sheet [m]. Only the product $Et$ enters."))
+		((Real,poisson,NaN,,"Poisson's ratio $\\nu$ of the sheet in its plane [-], 0 to 1/3."))
+		((Real,tensileStrength,std::numeric_limits<Real>::infinity(),,"Tension at which a bond breaks [N] (PFC: cb_tenf)."))
+		((Real,shearStrength,std::numeric_limits<Real>::infinity(),,"Shear force at which a bond breaks [N] (PFC: cb_shearf)."))
+		((Real,friction,0,,"Friction coefficient of broken bonds [-]."))
+		((bool,tensionOnly,false,,"Carry no compression: a thin latex sheet wrinkles instead. With ks = 0 only."))
+		((vector<Vector3r>,shearForces,,Attr::readonly,"Shear force [N] on the first particle of each bond (empty with ks = 0)."))
+		((vector<int>,broken,,Attr::readonly,"1 for each broken bond (empty while nothing can break)."))
+		,/*ctor*/,
+		.def("elasticEnergy",&MembraneBonds::elasticEnergy,"Elastic energy of all bonds [J] at the last step.")
+		.def("normalForces",&MembraneBonds::normalForces,"Normal force of each bond at the last step [N], tension positive, in the order of :yref:`HexMembrane.bonds`.")
+		.def("criticalTimeStep",&MembraneBonds::criticalTimeStep,"Upper bound of a stable time step [s] of the bonds alone, $2\\sqrt{m/(6(k_n+k_s))}$ (Gershgorin's circle for six neighbours); contacts make it shorter.")
+		.add_property("brokenCount",&MembraneBonds::brokenCount,"Number of broken bonds.")
+	);
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(MembraneBonds);
+
+} // namespace yade
