@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How far a run is: a bar (tqdm) on a terminal, plain lines elsewhere."""
+
+import sys
+import time
+
+
+def clock(seconds):
+	"""Seconds as 'm:ss' or 'h:mm:ss'; '?' when not known."""
+	if seconds is None:
+		return "?"
+	minutes, seconds = divmod(int(round(seconds)), 60)
+	hours, minutes = divmod(minutes, 60)
+	return f"{hours}:{minutes:02d}:{seconds:02d}" if hours else f"{minutes}:{seconds:02d}"
+
+
+class Progress:
+	"""One stage's progress.
+
+	:param stage: name shown.
+	:param quiet: show nothing (messages by :meth:`say` included).
+	:param stream: where to; a terminal gets a bar.
+	:param every: seconds between plain lines, at least.
+	"""
+
+	def __init__(self, stage, quiet=False, stream=None, every=5.0):
+		self.stage, self.quiet, self.every = stage, quiet, every
+		self.stream = sys.stderr if stream is None else stream
+		self.started = time.monotonic()
+		self.begun = None
+		self.said = -float("inf")
+		self.bar = None
+		if not quiet and getattr(self.stream, "isatty", lambda: False)():
+			from tqdm import tqdm
+
+			self.bar = tqdm(
+				total=1.0,
+				desc=stage,
+				file=self.stream,
+				leave=True,
+				dynamic_ncols=True,
+				bar_format="{desc:<13} {percentage:5.1f}% |{bar}| {postfix}",
+			)
+
+	def left(self, done):
+		"""Seconds left when a share ``done`` of the stage is behind us, None when not known yet; a resumed share costs nothing."""
+		if self.begun is None or done <= self.begun:
+			return None
+		return (time.monotonic() - self.started) * (1 - done) / (done - self.begun)
+
+	def update(self, done, **state):
+		"""Show the share ``done`` (0..1) and the values in ``state`` (name -> text)."""
+		done = min(max(done, 0.0), 1.0)
+		if self.begun is None:
+			self.begun = done
+		if self.quiet:
+			return
+		text = ", ".join(f"{name} {value}" for name, value in state.items())
+		text = f"{text}, {clock(self.left(done))} left"
+		if self.bar is not None:
+			self.bar.n = done
+			self.bar.set_postfix_str(text, refresh=True)
+			return
+		now = time.monotonic()
+		if now - self.said >= self.every or done == 1.0:
+			self.said = now
+			print(f"{self.stage}: {100 * done:5.1f} %, {text}", file=self.stream, flush=True)
+
+	def say(self, text):
+		"""A line of its own, above the bar if there is one."""
+		if self.quiet:
+			return
+		if self.bar is not None:
+			self.bar.write(text, file=self.stream)
+		else:
+			print(text, file=self.stream, flush=True)
+
+	def close(self):
+		if self.bar is not None:
+			self.bar.close()
+			self.bar = None
+
+	def __enter__(self):
+		return self
+
+	def __exit__(self, *_):
+		self.close()

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The rows of records.csv: what each column is, its unit, sign and source, stated once, here.
+
+Every row is written whole and flushed, so that a killed run leaves a readable file; a resumed run cuts the rows after its
+checkpoint and goes on. Strains count from the start of the row's stage (``stage`` column). Needs no YADE.
+"""
+
+import dataclasses
+import math
+import os
+import pathlib
+
+import numpy
+
+
+@dataclasses.dataclass(frozen=True)
+class Column:
+	"""One column; ``doc`` says sign, formula and source."""
+
+	name: str
+	unit: str
+	doc: str
+
+	@property
+	def header(self):
+		return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+COLUMNS = (
+	Column("stage", "", "consolidation or shear"),
+	Column("step", "", "YADE's step, O.iter"),
+	Column("time", "s", "YADE's time, O.time"),
+	Column("axial_strain", "-", "eps1 = (h0 - h)/h0 with h the distance of the platens' faces; compression positive"),
+	Column("q", "Pa", "deviatoric stress (F - sigma3 Ae)/Am: F mean platen force, Ae face of a platen, Am mean area V/h; compression positive"),
+	Column("axial_stress", "Pa", "q + sigma3_applied, at mid-height by the balance of forces on half the specimen; compression positive"),
+	Column("sigma3_applied", "Pa", "pressure asked of the membrane; pushes inwards"),
+	Column("sigma3_transmitted_group3", "Pa", "inward normal contact forces of the membrane's main body over its inner area"),
+	Column("sigma3_transmitted_group2", "Pa", "the same of the rows beside the platens (their forces on the platens' sides included)"),
+	Column("sigma3_transmitted_all", "Pa", "the same of the whole membrane between the O-rings"),
+	Column("volumetric_strain_radius", "-", "theta = (h - h0)/h0 + 2 (r - r0)/r0, r mean radius of the membrane (Eq. 6); dilation positive"),
+	Column("volumetric_strain_volume", "-", "(V - V0)/V0, V enclosed by the inner surface between the platens' faces; dilation positive"),
+	Column("porosity", "-", "1 - (volume of the grains)/V; overlaps at contacts are not taken off"),
+	Column("coordination", "-", "2 (contacts among grains with a normal force)/(number of grains)"),
+	Column("unbalanced", "-", "YADE's unbalancedForce: mean force on moving bodies (membrane too) over mean contact force"),
+	Column("inertial_number", "-", "I = (approach speed of the platens/h) d sqrt(rho/sigma3), d mean diameter of the grains"),
+	Column("platen_force_bottom", "N", "on the bottom platen along its outward normal; positive when the specimen pushes back"),
+	Column("platen_force_top", "N", "the same on the top platen"),
+	Column("height", "m", "h, distance of the platens' faces"),
+	Column("mean_radius", "m", "r, mean radius of the membrane's inner surface"),
+	Column("volume", "m3", "V, enclosed by the inner surface between the platens' faces"),
+	Column("membrane_area", "m2", "area on which the pressure acts (group 3)"),
+	Column("bonds_broken", "", "broken membrane bonds"),
+	Column("elapsed", "s", "wall clock spent on the test so far, set-up of a resumed run not counted"),
+)
+
+_TEXT = ("stage",)
+
+
+class Records:
+	"""records.csv being written.
+
+	:param path: the file.
+	:param keep: bytes to keep of an existing file (a checkpoint's :meth:`position`); None starts anew.
+	:raises ValueError: the existing file is shorter than ``keep`` or has other columns.
+	"""
+
+	def __init__(self, path, keep=None):
+		self.path = pathlib.Path(path)
+		header = ",".join(column.header for column in COLUMNS) + "\n"
+		if keep is None:
+			self._file = open(self.path, "wb")
+			self._write(header)
+			return
+		size = self.path.stat().st_size if self.path.is_file() else 0
+		if size < keep:
+			raise ValueError(
+				f"records = '{self.path}': has {size} bytes, its checkpoint was taken at {keep}; fix: put the file back or start anew"
+			)
+		self._file = open(self.path, "r+b")
+		if self._file.readline().decode(errors="replace") != header:
+			self._file.close()
+			raise ValueError(f"records = '{self.path}': has other columns than this version writes; fix: start anew in another folder")
+		self._file.truncate(keep)
+		self._file.seek(keep)
+
+	def _write(self, line):
+		self._file.write(line.encode())
+		self._file.flush()
+
+	def append(self, row):
+		"""Write one row, a mapping with exactly the columns' names; values are written so that they read back exactly.
+
+		:raises ValueError: a column is missing or unknown, or a number is not finite.
+		"""
+		names = [column.name for column in COLUMNS]
+		if set(row) != set(names):
+			odd = sorted(set(row) ^ set(names))
+			raise ValueError(f"records.row = {odd}: missing or unknown columns; fix: give each of COLUMNS once")
+		cells = []
+		for name in names:
+			value = row[name]
+			if name in _TEXT:
+				cells.append(value)
+				continue
+			if not math.isfinite(value):
+				raise ValueError(f"records.{name} = {value} in step {row['step']}: is not finite; fix: see the state at the last checkpoint")
+			cells.append(repr(int(value)) if float(value).is_integer() and abs(value) < 2**53 else repr(float(value)))
+		self._write(",".join(cells) + "\n")
+
+	def position(self):
+		"""Bytes written so far; they are on the disk when this returns."""
+		os.fsync(self._file.fileno())
+		return self._file.tell()
+
+	def close(self):
+		self._file.close()
+
+	def __enter__(self):
+		return self
+
+	def __exit__(self, *_):
+		self.close()
+
+
+def read(path):
+	"""The records as a dict of column name -> numpy array (``stage``: list of text). A last row cut by a kill is left out.
+
+	:raises ValueError: no records file, or a row with a wrong number of cells.
+	"""
+	lines = pathlib.Path(path).read_text(encoding="utf-8").split("\n")
+	names = [header.split(" [")[0] for header in lines[0].split(",")]
+	if "stage" not in names or "step" not in names:
+		raise ValueError(f"records = '{path}': has no header of records.csv; fix: give the records.csv of a test")
+	rows = [line.split(",") for line in lines[1:-1]]
+	for number, row in enumerate(rows, 2):
+		if len(row) != len(names):
+			raise ValueError(f"records = '{path}', line {number}: has {len(row)} cells for {len(names)} columns; fix: restore the file")
+	table = {}
+	for k, name in enumerate(names):
+		cells = [row[k] for row in rows]
+		table[name] = cells if name in _TEXT else numpy.array([float(cell) for cell in cells])
+	return table
+
+
+def markdown():
+	"""The table of columns for the documentation."""
+	lines = ["| column | unit | meaning and sign |", "| --- | --- | --- |"]
+	return "\n".join(lines + [f"| `{column.name}` | {column.unit} | {column.doc} |" for column in COLUMNS])
