@@ -86,6 +86,12 @@ class Membrane:
 	)
 	gain: float = key(0.0, "gain of the loop that brings group 2's transmitted pressure to the target, 0: open loop", "", low=0, high=1)
 
+	def check(self, path):
+		if self.tensionOnly and self.poisson < 0.333333:
+			raise ConfigError(
+				f"{path}.tensionOnly", True, f"needs central bonds, and poisson = {self.poisson:g} has shear springs", "leave poisson at 1/3"
+			)
+
 
 @dataclasses.dataclass
 class Platens:

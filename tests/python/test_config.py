@@ -147,6 +147,14 @@ def test_missingAndUnreadableFile(folder):
 		configuration.load(folder / "binary.yaml")
 
 
+def test_tensionOnlyNeedsCentralBonds(folder):
+	given = changed("membrane.tensionOnly", True)
+	assert Config.of(given, folder).membrane.tensionOnly
+	given["membrane"]["poisson"] = 0.2
+	with pytest.raises(ConfigError, match="membrane.tensionOnly = True: needs central bonds.*fix: leave poisson"):
+		Config.of(given, folder)
+
+
 def test_pythonObjectIsCheckedToo(folder):
 	made = Config.of(GOOD, folder)
 	made.shear.strain = math.nan
