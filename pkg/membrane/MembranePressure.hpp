@@ -1,0 +1,68 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "HexMembrane.hpp"
+
+#include "kernels/PressureForce.hpp"
+
+#include <core/GlobalEngine.hpp>
+
+namespace yade {
+
+/*! Follower pressure on group 3 of a membrane or on any triangulated set of bodies. */
+class MembranePressure : public GlobalEngine {
+public:
+	void action() override;
+
+	Real             area() const;
+	Vector3r         resultant() const;
+	vector<Vector3r> forces() const;
+
+private:
+	void                     prepare();
+	void                     prepareMembrane();
+	void                     prepareMesh();
+	void                     requireStepped(const char* what) const;
+
+	// Caches, rebuilt from the attributes
+	hexmembrane::PressureForce kernel;
+	vector<Body::id_t>         vertexIds;             //!< bodies that are the vertices of the mesh
+	vector<int>                loaded;                //!< vertices that receive their force
+	vector<Vector3r>           positions, force;      //!< of all vertices
+	vector<Vector3r>           loadedX, loadedForce;  //!< of the loaded ones
+	const HexMembrane*         builtFor = nullptr;
+	string                     builtSurface;
+	vector<Body::id_t>         builtIds;
+	vector<Vector3i>           builtTriangles;
+	Real                       builtOffset = NaN;
+	int                        energyIndex = -1;
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembranePressure,GlobalEngine,
+		"Confining pressure on the main body (group 3) of a :yref:`HexMembrane`, or on any triangulated set of bodies, always on the current geometry. Stands before :yref:`NewtonIntegrator`.\n\n"
+		"A triangle $(a,b,c)$ gives each of its vertices $-\\frac{p}{6}(b-a)\\times(c-a)$: pressure times area along the inward normal, a third to each vertex (Eqs. 3-5 of the source study). Each particle of group 3 sums its six triangles, shared ones too; "
+		"other groups receive nothing here. On a closed surface resultant and moment vanish.\n\n"
+		"surface 'centre' puts the pressure on the triangles through the particles' centres, as the source study does: on a cylinder the soil then receives $p R_c/(R_c-R)$. "
+		"'inner' (default) puts it on the surface one sphere radius further in, where the membrane touches the soil, which takes this bias away; the forces still act at the centres (a moment of the order of R times their tangential part remains, zero on a tube by symmetry).\n\n"
+		"Positive pressure pushes from outside inwards. With :yref:`O.trackEnergy<Omega.trackEnergy>` minus the work is entered as 'pressureWork' (energy that comes in counts negative, as YADE does with gravity).\n\n"
+		"Errors: ``ValueError`` for parameters (neither or both of membrane and mesh, a pressure that is NaN, indices beyond ids), ``RuntimeError`` for a body erased or a force not finite (with body id and iteration).\n\n"
+		"Example::\n\n\tMembranePressure(membrane=m,pressure=100e3)\n\tMembranePressure(ids=[4,7,9],triangles=[(0,1,2)],surface='centre',pressure=1e3)",
+		((shared_ptr<HexMembrane>,membrane,,,"The membrane; or give ids and triangles."))
+		((vector<Body::id_t>,ids,,,"Bodies that are the vertices of a mesh of your own."))
+		((vector<Vector3i>,triangles,,,"Triangles of that mesh as indices into ids, counter-clockwise seen from the side of the pressure."))
+		((Real,pressure,NaN,,"Pressure [Pa], positive inwards; may be changed at any time. Required."))
+		((string,surface,"inner",,"'inner' or 'centre', see above."))
+		((Real,surfaceOffset,NaN,,"Distance [m] of the inner surface from the centres; NaN: the membrane's sphere radius. Required for 'inner' on a mesh of your own."))
+		((Real,work,0,Attr::readonly,"Work done by the pressure so far [J], trapezoidal in force and displacement; positive when the surface moves with the pressure."))
+		((vector<Vector3r>,lastForces,,(Attr::readonly|Attr::hidden),"Forces of the last step, for the work."))
+		((vector<Vector3r>,lastPositions,,(Attr::readonly|Attr::hidden),"Positions of the last step, for the work."))
+		,/*ctor*/,
+		.add_property("area",&MembranePressure::area,"Loaded area at the last step [m²]: a third of every triangle round each loaded particle.")
+		.add_property("resultant",&MembranePressure::resultant,"Sum of the applied forces at the last step [N].")
+		.def("forces",&MembranePressure::forces,"Applied force [N] on each vertex at the last step, in the order of ids (zero where none is applied).")
+	);
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(MembranePressure);
+
+} // namespace yade
