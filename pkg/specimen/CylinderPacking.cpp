@@ -1,0 +1,44 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "CylinderPacking.hpp"
+
+#include "kernels/Check.hpp"
+#include "kernels/SpherePacking.hpp"
+
+#include <stdexcept>
+
+namespace yade {
+
+const CylinderPacking& CylinderPacking::generated() const
+{
+	if (packedCentres.empty()) throw std::runtime_error("CylinderPacking: there are no results yet; fix: call generate() first");
+	return *this;
+}
+
+void CylinderPacking::generate()
+{
+	for (int axis = 0; axis < 3; ++axis) hexmembrane::requireFinite("CylinderPacking.origin", static_cast<double>(origin[axis]), "m");
+	if (seed < 0) hexmembrane::reject("CylinderPacking.seed", static_cast<double>(seed), "must not be negative", "0 or more");
+
+	hexmembrane::SpherePackingSpec spec;
+	spec.radius = static_cast<double>(radius);
+	spec.height = static_cast<double>(height);
+	spec.radii.assign(radii.begin(), radii.end());
+	spec.porosity = static_cast<double>(porosity);
+	spec.seed = static_cast<std::uint64_t>(seed);
+	spec.tolerance = static_cast<double>(tolerance);
+	spec.shakes = shakes;
+
+	const hexmembrane::SpherePacking made = hexmembrane::packSpheres(spec);
+	packedCentres.clear();
+	packedCentres.reserve(made.centres.size());
+	for (const auto& c : made.centres) packedCentres.push_back(origin + Vector3r(c[0], c[1], c[2]));
+	packedRadii.assign(made.radii.begin(), made.radii.end());
+	packedPorosity = made.porosity;
+	packedOverlap = made.maxOverlap;
+	packedScale = made.scale;
+	packedShakes = made.shakesUsed;
+}
+
+YADE_PLUGIN((CylinderPacking));
+
+} // namespace yade
