@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+import math
+
+import numpy as np
+import pytest
+
+from membraneScene import HEIGHT, RADIUS, makeMembrane, positions
+
+
+def test_bodiesAreOrdinarySpheres(O):
+	m = makeMembrane(mask=2)
+	assert list(m.ids) == list(range(len(m.ids))) and len(m.ids) == m.perRing * m.rings == len(O.bodies)
+	body = O.bodies[m.ids[len(m.ids) // 2]]
+	assert body.shape.__class__.__name__ == "Sphere" and body.shape.radius == m.sphereRadius and body.mask == 2
+	assert body.state.mass == pytest.approx(1000 * 4 / 3 * math.pi * m.sphereRadius**3, rel=1e-12)
+	assert body.state.blockedDOFs == "XYZ"
+	assert O.bodies[m.ids[0]].state.blockedDOFs == "xyzXYZ"
+
+
+def test_listsBelongTogether(O):
+	m = makeMembrane()
+	x = positions(m)
+	bonds, triangles = np.array([tuple(b) for b in m.bonds]), np.array([tuple(t) for t in m.triangles])
+	lengths = np.linalg.norm(x[bonds[:, 1]] - x[bonds[:, 0]], axis=1)
+	assert np.allclose(lengths, 2 * m.sphereRadius, rtol=1e-12, atol=0)
+	assert sorted(set(m.groups)) == [1, 2, 3] and m.groups[0] == m.groups[-1] == 1
+	a, b, c = (x[triangles[:, k]] for k in range(3))
+	outward = np.einsum("ij,ij->i", np.cross(b - a, c - a)[:, :2], ((a + b + c) / 3)[:, :2])
+	assert (outward > 0).all()
+
+
+def test_measuresOfTheGeneratedTube(O):
+	m = makeMembrane()
+	x = positions(m)
+	height = np.ptp(x[:, 2])
+	# the tube is a prism of flat triangles: its section lies between those of the n-gons in and round the circle
+	for surface, radius in (("inner", m.innerRadius), ("centre", m.centreRadius)):
+		polygon = 0.5 * m.perRing * math.sin(2 * math.pi / m.perRing)
+		volume = m.enclosedVolume(surface=surface)
+		assert polygon * radius**2 * height * 0.999 < volume < math.pi * radius**2 * height
+		assert m.surfaceArea(surface) == pytest.approx(2 * math.pi * radius * height, rel=0.01)
+	assert m.meanRadius() == pytest.approx(m.innerRadius, rel=1e-12)
+	assert m.meanRadius(surface="centre") == pytest.approx(m.centreRadius, rel=1e-12)
+	assert m.enclosedVolume(0.005, 0.025) == pytest.approx(m.enclosedVolume(0.005, 0.015) + m.enclosedVolume(0.015, 0.025), rel=1e-12)
+
+
+def test_originMovesEverything(O):
+	m = makeMembrane(origin=(0.1, -0.2, 0.3))
+	x = positions(m)
+	assert x[:, :2].mean(axis=0) == pytest.approx([0.1, -0.2], abs=1e-12)
+	assert 0.5 * (x[:, 2].min() + x[:, 2].max()) == pytest.approx(0.3 + HEIGHT / 2, rel=1e-12)
+	assert m.meanRadius() == pytest.approx(RADIUS, rel=1e-12)
+
+
+def test_transmittedPressureOfOneContact(O):
+	"""One grain pressed on one particle: the pressure is that force along the vertex normal over the inner area."""
+	from yade import Ig2_Sphere_Sphere_ScGeom, InteractionLoop, Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_FrictPhys_CundallStrack, Vector3, utils
+
+	m = makeMembrane()
+	index = m.perRing * (m.rings // 2)
+	x = O.bodies[m.ids[index]].state.pos
+	inward = -Vector3(x[0], x[1], 0).normalized()
+	grain = O.bodies.append(utils.sphere(x + inward * (m.sphereRadius + 0.001 - 1e-6), 0.001))
+	O.engines = [InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_FrictMat_FrictMat_FrictPhys()], [Law2_ScGeom_FrictPhys_CundallStrack()])]
+	contact = utils.createInteraction(grain, m.ids[index])
+	O.dt = 1e-9
+	O.step()
+	normal = contact.phys.normalForce.norm()
+	assert normal > 0
+	rows = m.rings - 2 * m.oRingRows
+	area = 2 * math.pi * m.innerRadius * m.ringSpacing * rows
+	assert m.transmittedPressure() == pytest.approx(normal / area, rel=5e-3)  # the polygon's area against the circle's
+	assert m.transmittedPressure(3) == pytest.approx(m.transmittedPressure() * rows / (rows - 2 * m.platenRows), rel=1e-9)
+	assert m.transmittedPressure(2) == 0
+	with pytest.raises(ValueError, match="group"):
+		m.transmittedPressure(1)
+
+
+BAD = [
+	(dict(specimenRadius=float("nan")), "HexMembrane.specimenRadius"),
+	(dict(specimenRadius=-1), "HexMembrane.specimenRadius = -1"),
+	(dict(specimenHeight=0), "HexMembrane.specimenHeight"),
+	(dict(particleRadius=float("inf")), "HexMembrane.particleRadius"),
+	(dict(particleRadius=0.05), "too coarse"),
+	(dict(specimenHeight=0.001), "no ring fits"),
+	(dict(platenRows=20), "overlap"),
+	(dict(oRingRows=-1), "HexMembrane.oRingRows"),
+	(dict(placement="inside"), "'outside' or 'centred'"),
+	(dict(density=-5), "HexMembrane.density"),
+	(dict(origin=(0, 0, float("nan"))), "HexMembrane.origin"),
+	(dict(smallestGrain=0.0001), "at most 0.000646"),
+]
+
+
+@pytest.mark.parametrize("changes, message", BAD, ids=[m for _, m in BAD])
+def test_badInputLeavesTheSceneEmpty(O, changes, message):
+	with pytest.raises(ValueError) as error:
+		makeMembrane(**changes)
+	assert message in str(error.value) and "fix:" in str(error.value)
+	assert len(O.bodies) == 0
+
+
+def test_coarseMembraneOnRequest(O):
+	assert len(makeMembrane(smallestGrain=0.0001, allowCoarse=True).ids) > 0
+
+
+def test_withoutMaterial(O):
+	from yade.wrapper import HexMembrane
+
+	with pytest.raises(ValueError, match="O.materials.append"):
+		HexMembrane(specimenRadius=RADIUS, specimenHeight=HEIGHT, particleRadius=0.002).generate()
+
+
+def test_generateTwiceIsRefused(O):
+	m = makeMembrane()
+	count = len(O.bodies)
+	with pytest.raises(ValueError, match="already"):
+		m.generate()
+	assert len(O.bodies) == count
+
+
+def test_nothingIsReadBeforeGenerate(O):
+	from yade.wrapper import HexMembrane
+
+	m = HexMembrane(specimenRadius=RADIUS, specimenHeight=HEIGHT, particleRadius=0.002)
+	for read in (lambda: m.groups, lambda: m.triangles, lambda: m.bonds, lambda: m.positions, m.enclosedVolume, m.meanRadius, m.transmittedPressure):
+		with pytest.raises(RuntimeError, match="generate"):
+			read()

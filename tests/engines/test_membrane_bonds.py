@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+import math
+
+import numpy as np
+import pytest
+
+from membraneScene import forcesOn, makeMembrane, shake, stateOf
+
+SHEET = dict(young=1.4e6, thickness=0.3e-3, poisson=1 / 3.0)
+
+
+def bondEngines(membrane, damping=0.0, **bonds):
+	from yade import ForceResetter, NewtonIntegrator
+	from yade.wrapper import MembraneBonds
+
+	return [ForceResetter(), MembraneBonds(membrane=membrane, label="bonds", **(bonds or SHEET)), NewtonIntegrator(damping=damping, label="newton")]
+
+
+def springForces(membrane, x, kn):
+	"""Sum of springs bond by bond in numpy."""
+	bonds = np.array([tuple(b) for b in membrane.bonds])
+	branch = x[bonds[:, 1]] - x[bonds[:, 0]]
+	length = np.linalg.norm(branch, axis=1)
+	onFirst = (kn * (length - 2 * membrane.sphereRadius) / length)[:, None] * branch
+	force = np.zeros_like(x)
+	np.add.at(force, bonds[:, 0], onFirst)
+	np.add.at(force, bonds[:, 1], -onFirst)
+	return force
+
+
+def test_forcesAreThoseOfSprings(O):
+	m = makeMembrane()
+	x = shake(m, 2e-4)
+	O.engines = bondEngines(m)
+	O.dt = 1e-9  # positions stay
+	O.step()
+	kn = SHEET["young"] * SHEET["thickness"] / (math.sqrt(3) * (1 - SHEET["poisson"]))
+	expected = springForces(m, x, kn)
+	assert np.abs(forcesOn(m.ids) - expected).max() < 1e-12 * np.abs(expected).max()
+
+
+def test_generatedMembraneStaysAtRest(O):
+	m = makeMembrane()
+	O.engines = bondEngines(m)
+	O.dt = 0.3 * O.engines[1].criticalTimeStep()
+	before = stateOf(m.ids)
+	O.run(200, True)
+	assert np.abs(stateOf(m.ids)[:, :3] - before[:, :3]).max() < 1e-12 * m.sphereRadius
+
+
+@pytest.mark.parametrize("bonds", [SHEET, dict(kn=400.0, ks=150.0)], ids=["central", "shear"])
+def test_energyIsKept(O, bonds):
+	"""Without damping elastic and kinetic energy add up to the start's; they are read half a step apart: a bounded error, linear in the step."""
+	from yade import utils
+
+	m = makeMembrane(rotations="ks" in bonds)
+	shake(m, 1e-4)
+	O.engines = bondEngines(m, **bonds)
+	O.dt = 0.02 * O.engines[1].criticalTimeStep()
+	O.step()
+	start = O.engines[1].elasticEnergy()
+	totals = []
+	for _ in range(20):
+		O.run(120, True)
+		totals.append(O.engines[1].elasticEnergy() + utils.kineticEnergy())
+	assert start > 0
+	assert max(abs(t - start) for t in totals) < 0.01 * start
+	if "ks" in bonds:
+		assert any(O.bodies[i].state.angVel.norm() > 0 for i in m.ids)
+
+
+def test_stableAtEightTenthsOfTheReportedStep(O):
+	from yade import utils
+
+	m = makeMembrane()
+	shake(m, 1e-5)
+	O.engines = bondEngines(m)
+	O.dt = 0.8 * O.engines[1].criticalTimeStep()
+	O.step()
+	start = O.engines[1].elasticEnergy() + utils.kineticEnergy()
+	O.run(3000, True)
+	assert O.engines[1].elasticEnergy() + utils.kineticEnergy() < 3 * start  # the energies of leapfrog oscillate near the limit, they do not grow
+
+
+def test_breaking(O):
+	m = makeMembrane()
+	O.engines = bondEngines(m, kn=400.0, ks=0.0, tensileStrength=0.02)
+	O.dt = 1e-9
+	O.step()
+	assert O.engines[1].brokenCount == 0
+	lifted = m.ids[m.perRing * (m.rings // 2) :]
+	for i in lifted:
+		O.bodies[i].state.pos += (0, 0, 1e-3)
+	O.step()
+	assert O.engines[1].brokenCount == 2 * m.perRing
+	assert np.abs(forcesOn(m.ids)).max() < 1e-12
+
+
+def test_saveAndLoadContinueExactly(O, tmp_path):
+	from yade import Vector3
+
+	m = makeMembrane(rotations=True)
+	shake(m, 3e-4)
+	O.engines = bondEngines(m, kn=400.0, ks=150.0, tensileStrength=0.08)
+	O.dt = 0.2 * O.engines[1].criticalTimeStep()
+	O.run(60, True)
+	assert O.engines[1].brokenCount > 0
+	file = str(tmp_path / "half.yade.bz2")
+	O.save(file)
+	O.run(60, True)
+	whole = stateOf(m.ids)
+	for i in m.ids:
+		O.bodies[i].state.pos += Vector3(1, 1, 1)
+	O.reset()
+	O.load(file)
+	O.run(60, True)
+	assert (stateOf(O.engines[1].membrane.ids) == whole).all()
+
+
+def test_energyTracker(O):
+	m = makeMembrane()
+	shake(m, 1e-4)
+	O.trackEnergy = True
+	O.engines = bondEngines(m)
+	O.dt = 1e-9
+	O.step()
+	assert O.energy["elastMembrane"] == pytest.approx(O.engines[1].elasticEnergy(), rel=1e-12)
+	O.trackEnergy = False
+
+
+def test_erasedBodyIsNamed(O):
+	m = makeMembrane()
+	O.engines = bondEngines(m)
+	O.dt = 1e-6
+	O.run(3, True)
+	O.bodies.erase(m.ids[100])
+	with pytest.raises(RuntimeError, match=r"body %d of the membrane is gone \(iteration 3\)" % m.ids[100]):
+		O.step()
+
+
+def test_nanIsNamed(O):
+	m = makeMembrane()
+	O.engines = bondEngines(m)
+	O.dt = 1e-6
+	O.bodies[m.ids[77]].state.pos = (float("nan"), 0, 0)
+	with pytest.raises(RuntimeError, match="not finite at iteration 0"):
+		O.step()
+
+
+BAD = [
+	(dict(), "MembraneBonds.kn"),
+	(dict(kn=-1.0), "MembraneBonds.kn = -1"),
+	(dict(kn=1.0, ks=-1.0), "MembraneBonds.ks"),
+	(dict(kn=1.0, young=1e6), "given twice"),
+	(dict(young=1e6, thickness=3e-4, poisson=0.5), "rubber"),
+	(dict(young=1e6, thickness=3e-4), "MembraneBonds.poisson"),
+	(dict(young=1e6, poisson=0.3), "MembraneBonds.thickness"),
+	(dict(kn=1.0, tensileStrength=0.0), "MembraneBonds.tensileStrength"),
+	(dict(kn=1.0, ks=1.0), "rotations=True"),
+	(dict(kn=1.0, ks=0.5, tensionOnly=True), "MembraneBonds.tensionOnly"),
+]
+
+
+@pytest.mark.parametrize("bonds, message", BAD, ids=[m for _, m in BAD])
+def test_badInput(O, bonds, message):
+	from yade.wrapper import MembraneBonds
+
+	engine = MembraneBonds(membrane=makeMembrane(), **bonds)
+	with pytest.raises(ValueError) as error:
+		engine()
+	assert message in str(error.value) and "fix:" in str(error.value)
+
+
+def test_withoutMembrane(O):
+	from yade.wrapper import HexMembrane, MembraneBonds
+
+	with pytest.raises(RuntimeError, match="MembraneBonds.membrane = None"):
+		MembraneBonds(kn=1.0)()
+	with pytest.raises(RuntimeError, match="generate"):
+		MembraneBonds(kn=1.0, membrane=HexMembrane())()

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+import numpy as np
+import pytest
+
+from membraneScene import forcesOn, makeMembrane, positions, shake, stateOf
+
+P = 1e5
+
+
+def engines(pressure, damping=0.2):
+	from yade import ForceResetter, NewtonIntegrator
+
+	return [ForceResetter(), pressure, NewtonIntegrator(damping=damping)]
+
+
+def test_groupThreeOnly(O):
+	from yade.wrapper import MembranePressure
+
+	m = makeMembrane()
+	O.engines = engines(MembranePressure(membrane=m, pressure=P))
+	O.dt = 1e-9
+	O.step()
+	f, groups, x = forcesOn(m.ids), np.array(m.groups), positions(m)
+	assert (f[groups != 3] == 0).all()
+	inward = -np.einsum("ij,ij->i", f[:, :2], x[:, :2])
+	assert (inward[groups == 3] > 0).all()
+	# a full turn of the lattice: no resultant across the axis
+	assert np.abs(f.sum(axis=0)[:2]).max() < 1e-12 * np.abs(f).sum()
+	assert np.array(O.engines[1].resultant) == pytest.approx(f.sum(axis=0), abs=1e-12 * np.abs(f).sum())
+
+
+@pytest.mark.parametrize("surface", ["inner", "centre"])
+def test_equationsOfTheStudy(O, surface):
+	"""Eqs. 3-5 in numpy, on either surface, on a deformed membrane."""
+	from yade.wrapper import MembranePressure
+
+	m = makeMembrane()
+	x = shake(m, 2e-4)
+	O.engines = engines(MembranePressure(membrane=m, pressure=P, surface=surface))
+	O.dt = 1e-9
+	O.step()
+	t = np.array([tuple(k) for k in m.triangles])
+
+	def areaVectors(y):
+		return 0.5 * np.cross(y[t[:, 1]] - y[t[:, 0]], y[t[:, 2]] - y[t[:, 0]])
+
+	def atVertices(values):
+		out = np.zeros_like(x)
+		for k in range(3):
+			np.add.at(out, t[:, k], values)
+		return out
+
+	y = x
+	if surface == "inner":
+		normals = atVertices(areaVectors(x))
+		y = x - m.sphereRadius * normals / np.linalg.norm(normals, axis=1)[:, None]
+	expected = atVertices(-P * areaVectors(y) / 3)
+	main = np.array(m.groups) == 3
+	assert np.abs(forcesOn(m.ids)[main] - expected[main]).max() < 1e-12 * np.abs(expected).max()
+	area = sum(np.linalg.norm(areaVectors(y), axis=1) @ main[t[:, k]] / 3 for k in range(3))
+	assert O.engines[1].area == pytest.approx(area, rel=1e-12)
+
+
+def test_meshOfOnesOwn(O):
+	"""A closed tetrahedron: no resultant, no moment, force = -p dV/dx."""
+	from yade import utils
+	from yade.wrapper import MembranePressure
+
+	corners = [(0, 0, 0), (1, 0, 0.1), (0, 1, 0), (0.2, 0.1, 1)]
+	ids = O.bodies.append([utils.sphere(c, 0.1) for c in corners])
+	pressure = MembranePressure(ids=ids, triangles=[(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)], pressure=P, surface="centre")
+	O.engines = engines(pressure)
+	O.dt = 1e-12
+	O.step()
+	f, x = forcesOn(ids), np.array(corners)
+	assert np.abs(f.sum(axis=0)).max() < 1e-12 * P
+	assert np.abs(np.cross(x, f).sum(axis=0)).max() < 1e-12 * P
+	volume = lambda y: np.linalg.det(y[1:] - y[0]) / 6
+	h = 1e-3
+	for v in range(4):
+		for a in range(3):
+			up, down = x.copy(), x.copy()
+			up[v, a] += h
+			down[v, a] -= h
+			assert f[v, a] == pytest.approx(-P * (volume(up) - volume(down)) / (2 * h), abs=1e-9 * P)
+
+
+def test_workIsPressureTimesVolume(O):
+	"""A closed cube shrunk by hand in small steps: work = -p dV, trapezoidal."""
+	from yade import ForceResetter, utils
+	from yade.wrapper import MembranePressure
+
+	corners = np.array([(i, j, k) for i in (0.0, 1.0) for j in (0.0, 1.0) for k in (0.0, 1.0)])
+	ids = O.bodies.append([utils.sphere(c, 0.1) for c in corners])
+	quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+	triangles = [t for q in quads for t in ((q[0], q[1], q[2]), (q[0], q[2], q[3]))]
+	pressure = MembranePressure(ids=ids, triangles=triangles, pressure=P, surface="centre")
+	O.engines = [ForceResetter(), pressure]
+	for step in range(101):
+		for i, c in zip(ids, corners):
+			O.bodies[i].state.pos = tuple(c * (1 - 0.001 * step))
+		O.step()
+	# trapezoid of a cubic: error h^2/12 of the second derivative, 1e-6 of the whole here
+	assert pressure.work == pytest.approx(P * (1 - 0.9**3), rel=1e-5)
+
+
+def test_saveAndLoadContinueExactly(O, tmp_path):
+	from yade.wrapper import MembraneBonds, MembranePressure
+
+	m = makeMembrane()
+	O.engines = engines(MembranePressure(membrane=m, pressure=P))
+	O.engines = O.engines[:1] + [MembraneBonds(membrane=m, kn=5e4)] + O.engines[1:]
+	O.dt = 1e-6
+	O.run(40, True)
+	file = str(tmp_path / "half.yade.bz2")
+	O.save(file)
+	O.run(40, True)
+	whole, work = stateOf(m.ids), O.engines[2].work
+	O.reset()
+	O.load(file)
+	assert O.engines[1].membrane is not None
+	O.run(40, True)
+	assert (stateOf(O.engines[2].membrane.ids) == whole).all() and O.engines[2].work == work and work > 0
+
+
+def bad(**arguments):
+	from yade.wrapper import MembranePressure
+
+	return MembranePressure(**arguments)
+
+
+BAD = [
+	(lambda m: bad(membrane=m), ValueError, "MembranePressure.pressure"),
+	(lambda m: bad(membrane=m, pressure=float("nan")), ValueError, "MembranePressure.pressure = nan"),
+	(lambda m: bad(pressure=1.0), ValueError, "MembranePressure.membrane = None"),
+	(lambda m: bad(membrane=m, ids=[0], triangles=[(0, 0, 0)], pressure=1.0), ValueError, "given together"),
+	(lambda m: bad(membrane=m, pressure=1.0, surface="outer"), ValueError, "'inner' or 'centre'"),
+	(lambda m: bad(ids=[0, 1, 2], triangles=[(0, 1, 2)], pressure=1.0), ValueError, "surfaceOffset"),
+	(lambda m: bad(ids=[0, 1, 2], triangles=[(0, 1, 3)], pressure=1.0, surface="centre"), ValueError, "triangles[0] = 3"),
+	(lambda m: bad(ids=[0, 1, 99999], triangles=[(0, 1, 2)], pressure=1.0, surface="centre"), RuntimeError, "body 99999"),
+]
+
+
+@pytest.mark.parametrize("make, kind, message", BAD, ids=[b[2] for b in BAD])
+def test_badInput(O, make, kind, message):
+	engine = make(makeMembrane())
+	with pytest.raises(kind) as error:
+		engine()
+	assert message in str(error.value) and "fix:" in str(error.value)
+	with pytest.raises(RuntimeError, match="run a step first"):
+		engine.resultant
+
+
+def test_erasedBodyIsNamed(O):
+	from yade.wrapper import MembranePressure
+
+	m = makeMembrane()
+	O.engines = engines(MembranePressure(membrane=m, pressure=P))
+	O.dt = 1e-8
+	O.run(2, True)
+	O.bodies.erase(m.ids[150])
+	with pytest.raises(RuntimeError, match=r"body %d .* gone \(iteration 2\)" % m.ids[150]):
+		O.step()
