@@ -1,0 +1,51 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace hexmembrane {
+
+/// Weight of a smooth change that lasts `duration` (s) after `elapsed` (s): (1 - cos(pi elapsed/duration))/2, 0 before and 1 after it, its slope 0 at both
+/// ends. A change of duration 0 is done at once.
+inline double rampWeight(double elapsed, double duration)
+{
+	if (elapsed >= duration) return 1;
+	if (elapsed <= 0) return 0;
+	return 0.5 * (1 - std::cos(3.14159265358979323846 * elapsed / duration));
+}
+
+/// What the platen of a stress servo is: a body of `mass` (kg) on a dashpot of `viscosity` (N s/m), never faster than `maxVelocity` (m/s).
+struct PlatenServo {
+	double mass;
+	double viscosity;
+	double maxVelocity;
+};
+
+/// Largest share of the target force by which the contact force may change in one step.
+constexpr double servoForcePerStep = 0.01;
+
+/// Mass of a servo platen in units of K dt^2.
+constexpr double servoMassFactor = 4;
+
+/// The servo for a platen whose contacts have the summed stiffness K > 0 (N/m), with step dt (s), target force (N), damping ratio (1: critical) and two
+/// settings that may be NaN: a mass (kg) to take instead, and a velocity limit (m/s).
+///   mass         m = 4 K dt^2            so that the platen's own frequency is sqrt(K/m) = 1/(2 dt). Against contacts whose far ends move too it is at most
+///                                        sqrt(2K/m) (Gershgorin), a factor 2.8 below the leapfrog limit 2/dt, whatever K is.
+///   viscosity    c = 2 ratio sqrt(K m)   critical for the contacts alone; the specimen behind them is softer, and more than critically damped.
+///   maxVelocity  servoForcePerStep * target/(K dt), so that an impact cannot overshoot: what the platen meets, it meets over 100 steps or more.
+inline PlatenServo makePlatenServo(double stiffness, double dt, double target, double dampingRatio, double givenMass, double givenLimit)
+{
+	const double mass = std::isnan(givenMass) ? servoMassFactor * stiffness * dt * dt : givenMass;
+	const double limit = servoForcePerStep * target / (stiffness * dt);
+	return {mass, 2 * dampingRatio * std::sqrt(stiffness * mass), std::isnan(givenLimit) ? limit : std::min(limit, givenLimit)};
+}
+
+/// Velocity of the servo platen after a step (m/s, positive into the specimen): m dv/dt = wanted - measured - c v, the last term implicit (stable for any c).
+inline double servoVelocity(const PlatenServo& servo, double velocity, double dt, double wanted, double measured)
+{
+	const double next = (servo.mass * velocity + dt * (wanted - measured)) / (servo.mass + dt * servo.viscosity);
+	return std::clamp(next, -servo.maxVelocity, servo.maxVelocity);
+}
+
+} // namespace hexmembrane
