@@ -1,0 +1,400 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Platen and its functors in YADE, against closed forms."""
+
+import math
+import os
+import subprocess
+import sys
+
+import pytest
+import yade
+from hexmembrane.platens import platen
+from platenScene import engines, floor, material, sphere
+from yade import Bo1_Platen_Aabb, Ig2_Platen_Sphere_ScGeom6D, Platen, Quaternion, Vector3, utils
+
+KN, KS, FRICTION = 1e5, 5e4, 0.4
+RADIUS, HEIGHT, GRAIN = 0.02, 0.01, 0.002
+
+#: Sphere centre from the platen's centre in its own axes, outward normal, overlap. Rim: 3-4-5.
+PLACES = {
+	"upper face": ((0.005, -0.003, 0.5 * HEIGHT + 0.9 * GRAIN), (0, 0, 1), 0.1 * GRAIN),
+	"lower face": ((0.0, 0.011, -0.5 * HEIGHT - 0.95 * GRAIN), (0, 0, -1), 0.05 * GRAIN),
+	"side": ((0.0, -RADIUS - 0.9 * GRAIN, 0.003), (0, -1, 0), 0.1 * GRAIN),
+	"upper rim": ((RADIUS + 0.0012 * 0.9, 0.0, 0.5 * HEIGHT + 0.0016 * 0.9), (0.6, 0, 0.8), 0.1 * GRAIN),
+	"lower rim": ((0.0, -RADIUS - 0.0016 * 0.9, -0.5 * HEIGHT - 0.0012 * 0.9), (0, -0.8, -0.6), 0.1 * GRAIN),
+	"centre below the face": ((0.001, 0.002, 0.5 * HEIGHT - 0.1 * GRAIN), (0, 0, 1), 1.1 * GRAIN),
+	"centre inside the side": ((RADIUS - 0.2 * GRAIN, 0.0, 0.001), (1, 0, 0), 1.2 * GRAIN),
+}
+
+ORIENTATIONS = {
+	"upright": Quaternion.Identity,
+	"spun": Quaternion((0, 0, 1), 1.1),
+	"tilted": Quaternion((1, 2, 3), 0.8),
+	"upside down": Quaternion((1, 0, 0), math.pi),
+}
+
+
+def apart(a, b):
+	return (Vector3(a) - Vector3(b)).norm()
+
+
+@pytest.mark.parametrize("orientation", ORIENTATIONS)
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("platenFirst", (True, False))
+def test_pressedSphereFeelsKnTimesOverlap(O, place, orientation, platenFirst):
+	local, normal, overlap = PLACES[place]
+	turn = ORIENTATIONS[orientation]
+	turn.normalize()
+	centre = Vector3(0.3, -0.2, 0.1)
+	material(O)
+
+	def addPlaten():
+		body = platen((0, 0, 0), RADIUS, HEIGHT, +1)
+		body.state.pos, body.state.ori = centre, turn
+		return O.bodies.append(body)
+
+	def addSphere():
+		return sphere(O, centre + turn * Vector3(local), GRAIN, fixed=True)
+
+	if platenFirst:
+		plate, ball = addPlaten(), addSphere()
+	else:
+		ball, plate = addSphere(), addPlaten()
+	engines(O, KN, KS)
+	O.dt = 1e-6
+	O.step()
+
+	contact = O.interactions[plate, ball]
+	assert contact.isReal and (contact.id1, contact.id2) == (plate, ball)
+	world = turn * Vector3(normal)
+	assert apart(contact.geom.normal, world) < 1e-12
+	assert abs(contact.geom.penetrationDepth - overlap) < 1e-12 * RADIUS
+	point = centre + turn * Vector3(local) - world * (GRAIN - 0.5 * overlap)
+	assert apart(contact.geom.contactPoint, point) < 1e-14
+	assert contact.geom.refR1 == contact.geom.refR2 == GRAIN
+	pushed = O.forces.f(ball, sync=True)
+	assert apart(pushed, world * (KN * overlap)) < 1e-12 * KN * GRAIN
+	# Action is reaction, and the torque on the platen is that of its force at the contact point.
+	assert O.forces.f(plate, sync=True) == -pushed
+	assert apart(O.forces.t(plate, sync=True), (point - centre).cross(-pushed)) < 1e-12 * KN * GRAIN * RADIUS
+
+
+def test_aSphereJustOutsideHasNoContact(O):
+	material(O)
+	plate = floor(O, RADIUS, HEIGHT)
+	ball = sphere(O, (0, 0, GRAIN * (1 + 1e-9)), GRAIN, fixed=True)
+	engines(O, KN, KS)
+	O.step()
+	assert not O.interactions.has(plate, ball, True)
+
+
+def test_detectionFactorReachesAcrossAGap(O):
+	material(O)
+	plate = floor(O, RADIUS, HEIGHT)
+	ball = sphere(O, (0, 0, 1.2 * GRAIN), GRAIN, fixed=True)
+	engines(O, KN, KS)
+	O.engines[1].boundDispatcher.functors[0].aabbEnlargeFactor = 1.25
+	O.engines[2].geomDispatcher.functors[1].interactionDetectionFactor = 1.25
+	O.engines[2].lawDispatcher.functors[0].neverErase = True
+	O.step()
+	assert abs(O.interactions[plate, ball].geom.penetrationDepth + 0.2 * GRAIN) < 1e-15
+
+
+def test_stiffnessIsThatOfABox(O):
+	"""With YADE's own rule for kn from the moduli, a platen and a Box of the same material are equally stiff."""
+	material(O)
+	floor(O, RADIUS, HEIGHT)
+	O.bodies.append(utils.box((1, 0, -0.5), (0.1, 0.1, 0.5), fixed=True))
+	sphere(O, (0, 0, 0.9 * GRAIN), GRAIN, fixed=True)
+	sphere(O, (1, 0, 0.9 * GRAIN), GRAIN, fixed=True)
+	engines(O)
+	O.engines = [
+		O.engines[0],
+		yade.InsertionSortCollider([yade.Bo1_Sphere_Aabb(), Bo1_Platen_Aabb(), yade.Bo1_Box_Aabb()]),
+		yade.InteractionLoop(
+			[yade.Ig2_Platen_Sphere_ScGeom(), yade.Ig2_Box_Sphere_ScGeom()],
+			[yade.Ip2_FrictMat_FrictMat_FrictPhys()],
+			[yade.Law2_ScGeom_FrictPhys_CundallStrack()],
+		),
+		O.engines[3],
+	]
+	O.step()
+	ours, theirs = O.interactions[0, 2], O.interactions[1, 3]
+	assert ours.phys.kn == theirs.phys.kn and ours.phys.ks == theirs.phys.ks and ours.phys.kn > 0
+	assert abs(ours.phys.normalForce[2] - theirs.phys.normalForce[2]) < 1e-12 * theirs.phys.normalForce[2]
+
+
+def test_bounceOffFaceAndRim(O):
+	"""Undamped: the sphere leaves at the speed it came with, after half a period, pi sqrt(m/kn); along the normal of the rim too."""
+	speed = 0.1
+	material(O)
+	floor(O, RADIUS, HEIGHT)
+	above = sphere(O, (0, 0, GRAIN), GRAIN)
+	beside = sphere(O, (RADIUS + 0.6 * GRAIN, 0, 0.8 * GRAIN), GRAIN)
+	O.bodies[above].state.vel = (0, 0, -speed)
+	O.bodies[beside].state.vel = (-0.6 * speed, 0, -0.8 * speed)
+	engines(O, KN, KS)
+	mass = O.bodies[above].state.mass
+	half = math.pi * math.sqrt(mass / KN)
+	O.dt = half / 2000
+	steps = {}
+	for step in range(2100):
+		O.step()
+		for ball in (above, beside):
+			if ball not in steps and step > 10 and not O.interactions.has(0, ball, True):
+				steps[ball] = step
+	for ball in (above, beside):
+		assert abs(steps[ball] * O.dt / half - 1) < 2e-3  # two steps of 2000
+	assert apart(O.bodies[above].state.vel, (0, 0, speed)) < 2e-3 * speed
+	assert apart(O.bodies[beside].state.vel, (0.6 * speed, 0, 0.8 * speed)) < 2e-3 * speed
+
+
+@pytest.mark.parametrize("moves", ("sphere", "platen"))
+def test_shearGrowsByKsAndSlipsAtMuFn(O, moves):
+	"""Dragged at constant overlap, the shear force on the sphere is ks v t until mu Fn and stays there; it does not matter which of the two moves."""
+	overlap, speed = 1e-4, 0.5
+	material(O, FRICTION)
+	plate = floor(O, RADIUS, HEIGHT)
+	ball = sphere(O, (0, 0, GRAIN - overlap), GRAIN, fixed=True)
+	O.bodies[ball if moves == "sphere" else plate].state.vel = (speed, 0, 0)
+	engines(O, KN, KS)
+	O.dt = 1e-6
+	sign = -1 if moves == "sphere" else 1
+	limit = FRICTION * KN * overlap
+	slipAt = limit / (KS * speed * O.dt)
+	assert 100 < slipAt < 400
+	for step in range(1, 500):
+		O.step()
+		shear = O.forces.f(ball, sync=True)
+		# The velocity that was set is counted in the step that makes the contact, too.
+		expected = min(KS * speed * O.dt * step, limit)
+		assert abs(shear[0] - sign * expected) < 1e-10 * limit
+		assert abs(shear[1]) < 1e-12 * limit and abs(shear[2] - KN * overlap) < 1e-10 * KN * overlap
+		assert O.forces.f(plate, sync=True) == -shear
+	# Torque on the sphere: the force acts half way through the overlap.
+	torque = O.forces.t(ball, sync=True)
+	assert abs(torque[1] + (GRAIN - 0.5 * overlap) * sign * limit) < 1e-10 * limit * GRAIN
+
+
+def test_movingTogetherMakesNoShear(O):
+	overlap = 1e-4
+	material(O)
+	plate = floor(O, RADIUS, HEIGHT)
+	ball = sphere(O, (0.01, 0, GRAIN - overlap), GRAIN, fixed=True)
+	for body in (plate, ball):
+		O.bodies[body].state.vel = (3, -2, 5)
+	engines(O, KN, KS)
+	O.dt = 1e-5
+	O.run(2000, True)  # 0.12 m away
+	assert O.bodies[plate].state.pos[2] > 0.09
+	force = O.forces.f(ball, sync=True)
+	assert apart(force, (0, 0, KN * overlap)) < 1e-8 * KN * overlap
+
+
+def test_platenTurningUnderASphere(O):
+	"""A platen that spins on its axis drags a sphere at distance rho by omega rho, tangentially; the sphere's own place decides, not the platen's centre."""
+	overlap, omega, rho = 1e-4, 20.0, 0.012
+	material(O)
+	plate = floor(O, RADIUS, HEIGHT)
+	ball = sphere(O, (rho, 0, GRAIN - overlap), GRAIN, fixed=True)
+	O.bodies[plate].state.angVel = (0, 0, omega)
+	engines(O, KN, KS)
+	O.dt = 1e-6
+	for step in range(1, 100):
+		O.step()
+		shear = O.forces.f(ball, sync=True)
+		# YADE turns the old shear force by half the spin, dt omega/2 a step, towards -x: second order here.
+		assert abs(shear[1] - KS * omega * rho * O.dt * step) < 1e-5 * KS * omega * rho * O.dt * step
+		assert abs(shear[0]) <= 0.5 * omega * O.dt * step * shear[1]
+	contact = O.interactions[plate, ball]
+	assert apart(contact.geom.incidentVel(contact, False), (0, -omega * rho, 0)) < 1e-12
+
+
+def test_rigidMotionOfBothMakesNoRelativeVelocity(O):
+	"""Platen and sphere move as one rigid body that turns about a far axis: no relative velocity at the contact, whatever the turn."""
+	material(O)
+	plate = floor(O, RADIUS, HEIGHT)
+	ball = sphere(O, (RADIUS + 0.9 * GRAIN, 0, -0.3 * HEIGHT), GRAIN, fixed=True)
+	omega, pivot = Vector3(3, -4, 5), Vector3(0.7, 0.1, -0.4)
+	for body in (plate, ball):
+		state = O.bodies[body].state
+		state.angVel = omega
+		state.vel = omega.cross(state.pos - pivot)
+	engines(O, KN, KS)
+	O.dt = 1e-12  # nothing moves: the velocities of this instant
+	O.step()
+	contact = O.interactions[plate, ball]
+	assert contact.geom.incidentVel(contact, False).norm() < 1e-12
+
+
+def test_boundIsExactAtAnyOrientation(O):
+	material(O)
+	body = platen((0, 0, 0), 0.3, 0.2, -1)
+	turn = Quaternion((1, 2, 3), 0.8)
+	turn.normalize()
+	body.state.ori = turn
+	O.bodies.append(body)
+	sphere(O, (5, 5, 5), 0.1, fixed=True)
+	engines(O)
+	O.step()
+	sweep = body.bound.sweepLength
+	assert abs(sweep - 0.05 * 0.1) < 1e-15  # the collider's, on top
+	axis = turn * Vector3(0, 0, 1)
+	for i in range(3):
+		half = 0.3 * math.sqrt(1 - axis[i] ** 2) + 0.1 * abs(axis[i]) + sweep
+		assert abs(body.bound.max[i] - body.state.pos[i] - half) < 1e-14
+		assert abs(body.bound.min[i] - body.state.pos[i] + half) < 1e-14
+
+
+def test_platenThatTipsFindsWhatItTurnsInto(O):
+	"""The collider looks at movement only, and nothing moves here: the bound must allow for the turn from the start."""
+	material(O)
+	rod = platen((0, 0, 0.5), 0.1, 1.0, +1)  # centre at the origin, tall
+	rod.state.angVel = (0, math.pi / 2, 0)  # a quarter turn in 1 s
+	plate = O.bodies.append(rod)
+	ball = sphere(O, (0.55, 0, 0), 0.06, fixed=True)
+	engines(O, KN, KS)
+	O.dt = 1e-3
+	O.run(500, True)
+	assert not O.interactions.has(plate, ball, True)
+	O.run(500, True)
+	O.bodies[plate].state.angVel = (0, 0, 0)
+	O.step()
+	contact = O.interactions[plate, ball]
+	assert abs(contact.geom.penetrationDepth - 0.01) < 1e-6
+	assert apart(contact.geom.normal, (1, 0, 0)) < 1e-6
+
+
+def test_platenThatTravelsFindsWhatItMeets(O):
+	material(O)
+	plate = floor(O, RADIUS, HEIGHT)
+	ball = sphere(O, (0, 0, 0.2), GRAIN, fixed=True)
+	O.bodies[plate].state.vel = (0, 0, 1)
+	engines(O, KN, KS)
+	O.dt = 1e-5
+	met = 0.2 - GRAIN  # m = s here
+	O.run(int(met / O.dt) - 5, True)
+	assert not O.interactions.has(plate, ball, True)
+	O.run(25, True)
+	force = O.forces.f(ball, sync=True)
+	overlap = O.bodies[plate].state.pos[2] - O.dt + 0.5 * HEIGHT - met  # positions of the last contact search
+	assert 1e-4 < overlap < 3e-4
+	assert abs(force[2] - KN * overlap) < 1e-9 * KN * overlap
+
+
+def test_sixDegreesOfFreedomFollowTheRotation(O):
+	"""A sphere rolled by 0.01 about y and spun by 0.02 about the normal against a resting platen."""
+	material(O)
+	plate = floor(O, RADIUS, HEIGHT)
+	ball = sphere(O, (0, 0, 0.9 * GRAIN), GRAIN, fixed=True)
+	engines(O, KN, KS, geometry=Ig2_Platen_Sphere_ScGeom6D())
+	O.dt = 1e-6
+	O.step()
+	geom = O.interactions[plate, ball].geom
+	assert type(geom).__name__ == "ScGeom6D" and geom.twist == 0 and geom.bending.norm() == 0
+	turn = Quaternion(Vector3(0, 0.01, 0.02).normalized(), math.hypot(0.01, 0.02))
+	O.bodies[ball].state.ori = turn
+	O.step()
+	# YADE's sign: the rotation that takes body 2 back to body 1's frame.
+	assert abs(abs(geom.twist) - 0.02) < 1e-12
+	assert abs(geom.bending.norm() - 0.01) < 1e-12
+	assert abs(geom.bending[0]) < 1e-12 and abs(geom.bending[2]) < 1e-12
+
+
+def rollingScene(O):
+	material(O)
+	plate = floor(O, RADIUS, HEIGHT)
+	for i in range(6):
+		ball = sphere(O, (0.006 * i - 0.013, 0.002 * i, GRAIN * (1 + 0.3 * i)), GRAIN)
+		O.bodies[ball].state.vel = (0.4, -0.1 * i, -0.2)
+	O.bodies[plate].state.angVel = (0, 0, 5)
+	engines(O, KN, KS, gravity=(0, 0, -9.81), damping=0.1)
+	O.dt = 5e-6
+
+
+def snapshot(O):
+	return [(tuple(b.state.pos), tuple(b.state.vel), tuple(b.state.angVel)) for b in O.bodies]
+
+
+def test_savedAndLoadedMidRunIsTheSameRun(O, tmp_path):
+	rollingScene(O)
+	O.run(1500, True)
+	file = str(tmp_path / "half.yade.gz")
+	O.save(file)
+	O.run(1500, True)
+	whole = snapshot(O)
+	assert any(abs(v) > 1e-6 for v in whole[3][2])  # contacts have turned the spheres
+	O.reset()
+	O.load(file)
+	O.run(1500, True)
+	if O.numThreads == 1:
+		assert snapshot(O) == whole
+	else:
+		for a, b in zip(snapshot(O), whole):
+			assert all(apart(u, v) < 1e-9 for u, v in zip(a, b))
+
+
+@pytest.mark.parametrize("attribute", ("radius", "height"))
+@pytest.mark.parametrize("value", (0, -1e-3, math.inf))
+def test_sizesAreCheckedBeforeAnythingChanges(attribute, value):
+	with pytest.raises(ValueError, match="Platen." + attribute):
+		Platen(**{"radius": 0.01, "height": 0.01, attribute: value})
+	good = Platen(radius=0.02, height=0.03)
+	with pytest.raises(ValueError, match="Platen." + attribute):
+		setattr(good, attribute, value)
+	assert (good.radius, good.height) == (0.02, 0.03)
+
+
+@pytest.mark.parametrize(
+	"change, part",
+	(
+		({"radius": -1}, "platen.radius"),
+		({"radius": math.nan}, "platen.radius"),
+		({"height": 0}, "platen.height"),
+		({"facing": 0}, "platen.facing"),
+		({"facing": 2}, "platen.facing"),
+		({"faceCentre": (0, 0)}, "platen.faceCentre"),
+		({"faceCentre": (0, math.nan, 0)}, "platen.faceCentre"),
+		({"material": "steel"}, "platen.material"),
+		({"material": 7}, "platen.material"),
+	),
+)
+def test_helperRefuses(O, change, part):
+	material(O)
+	with pytest.raises(ValueError, match=part):
+		platen(**{"faceCentre": (0, 0, 0), "radius": 0.02, "height": 0.01, "facing": 1, **change})
+	assert len(O.bodies) == 0
+
+
+def test_helperNeedsAMaterial(O):
+	with pytest.raises(ValueError, match="platen.material"):
+		platen((0, 0, 0), 0.02, 0.01, 1)
+
+
+def test_helperPlacesTheFace(O):
+	material(O)
+	below, above = platen((1, 2, 3), 0.02, 0.01, +1), platen((1, 2, 3), 0.02, 0.01, -1)
+	assert below.state.pos == Vector3(1, 2, 2.995) and above.state.pos == Vector3(1, 2, 3.005)
+	assert below.state.refPos == below.state.pos
+	assert below.state.blockedDOFs == "xyzXYZ" and not below.dynamic
+	assert below.material is not None and below.material.label == O.materials[0].label
+	O.bodies.append([below, above])
+	assert isinstance(O.bodies[1].shape, Platen)
+
+
+def test_missingSizeEndsTheRunWithItsMessage():
+	"""YADE calls bound functors in a parallel loop, out of which no exception comes: the program ends, with the message."""
+	here = os.path.dirname(os.path.abspath(__file__))
+	script = (
+		"import sys; sys.path[:0] = [%r, %r]\n"
+		"import conftest, yade, platenScene\n"
+		"from yade import O\n"
+		"platenScene.material(O)\n"
+		"b = yade.Body(); b.shape = yade.Platen(radius=1); b.material = O.materials[0]; b.dynamic = False\n"
+		"O.bodies.append(b)\n"
+		"platenScene.engines(O)\n"
+		"O.step()\n"
+	) % (os.path.dirname(here), here)
+	run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=300)
+	assert run.returncode != 0
+	assert "Platen.height = nan: not given" in run.stderr + run.stdout
