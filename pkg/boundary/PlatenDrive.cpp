@@ -1,0 +1,197 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "PlatenDrive.hpp"
+
+#include <core/Interaction.hpp>
+#include <core/Scene.hpp>
+#include <kernels/Check.hpp>
+#include <kernels/PlatenServo.hpp>
+#include <pkg/common/NormShearPhys.hpp>
+#include <pkg/dem/NewtonIntegrator.hpp>
+
+#include <stdexcept>
+
+namespace yade {
+
+YADE_PLUGIN((PlatenDrive));
+
+namespace {
+
+// Velocity of the approach over sqrt(stress/density). In a specimen h high of grains of size d it is the inertial number times h/d, so grains that are
+// pushed at it stay well below the quasi-static limit of 1e-3.
+constexpr Real approachNumber = 1e-3;
+
+[[noreturn]] void stop(const std::string& what) { throw std::runtime_error(what); }
+
+} // namespace
+
+State& PlatenDrive::requirePlaten() const
+{
+	if (platen < 0) hexmembrane::reject("PlatenDrive.platen", int(platen), "no body given", "give the id of a Platen body");
+	if (!scene->bodies->exists(platen))
+		stop("PlatenDrive.platen = " + std::to_string(platen) +
+		     ": there is no such body (erased?); fix: give the id of a Platen body, or remove the engine");
+	const shared_ptr<Body>& body = Body::byId(platen, scene);
+	const auto* shape = dynamic_cast<const Platen*>(body->shape.get());
+	if (!shape) hexmembrane::reject("PlatenDrive.platen", int(platen), "the body's shape is no Platen", "give the id of a Platen body");
+	if (!body->isStandalone()) hexmembrane::reject("PlatenDrive.platen", int(platen), "the body belongs to a clump", "take it out of the clump");
+	shape->requireComplete();
+	return *body->state;
+}
+
+void PlatenDrive::requireSettings() const
+{
+	for (int i = 0; i < 3; i++) hexmembrane::requireFinite("PlatenDrive.direction[" + std::to_string(i) + "]", direction[i], "(no unit)");
+	if (direction.norm() < 1e-6)
+		hexmembrane::reject("PlatenDrive.direction", direction.norm(), "its length is zero", "give the direction into the specimen");
+	hexmembrane::requireNonNegative("PlatenDrive.rampTime", rampTime, "s");
+	if (!math::isnan(area)) hexmembrane::requirePositive("PlatenDrive.area", area, "m2");
+	if (mode == "velocity") {
+		hexmembrane::requireFinite("PlatenDrive.velocity", velocity, "m/s");
+		return;
+	}
+	if (mode != "stress") hexmembrane::reject("PlatenDrive.mode", "'" + mode + "'", "unknown mode", "give 'velocity' or 'stress'");
+	hexmembrane::requireFinite("PlatenDrive.stress", stress, "Pa");
+	if (stress <= 0)
+		hexmembrane::reject("PlatenDrive.stress", stress, "a loose packing holds no tension",
+		                    "give a stress > 0 Pa, or unload with mode 'velocity' and a negative velocity");
+	hexmembrane::requireNonNegative("PlatenDrive.damping", damping, "(no unit)");
+	hexmembrane::requirePositive("PlatenDrive.tolerance", tolerance, "(no unit)");
+	if (!math::isnan(mass)) hexmembrane::requirePositive("PlatenDrive.mass", mass, "kg");
+	if (!math::isnan(contactStiffness)) hexmembrane::requirePositive("PlatenDrive.contactStiffness", contactStiffness, "N/m");
+	if (!math::isnan(maxVelocity)) hexmembrane::requirePositive("PlatenDrive.maxVelocity", maxVelocity, "m/s");
+	if (!math::isnan(timeLimit)) hexmembrane::requirePositive("PlatenDrive.timeLimit", timeLimit, "s");
+}
+
+void PlatenDrive::requireOrder() const
+{
+	bool integrated = false;
+	for (const auto& engine : scene->engines) {
+		if (dynamic_cast<const NewtonIntegrator*>(engine.get())) integrated = true;
+		if (engine.get() == this && integrated)
+			stop("PlatenDrive: it comes after NewtonIntegrator in O.engines; fix: put it before, after the engines that add forces");
+	}
+}
+
+Real PlatenDrive::target(const Platen& shape) const
+{
+	if (mode == "velocity") return velocity;
+	return stress * (math::isnan(area) ? Mathr::PI * shape.radius * shape.radius : area);
+}
+
+void PlatenDrive::record(const State& state, Real newForce, const Vector3r& unit)
+{
+	// A gap in the steps (the engine was dead, or O.resetTime) is nobody's work.
+	if (scene->iter == lastIter + 1) {
+		const Real way = (state.pos - lastPosition).dot(unit);
+		const Real done = 0.5 * (force + newForce) * way;
+		displacement += way;
+		work += done;
+		if (scene->trackEnergy) scene->energy->add(-done, "platenWork", energyIndex, /*reset every step*/ false);
+	}
+	force = newForce;
+	lastIter = scene->iter;
+	lastPosition = state.pos;
+}
+
+Real PlatenDrive::approachVelocity() const
+{
+	if (!math::isnan(maxVelocity)) return maxVelocity;
+	Real mass = 0, volume = 0;
+	for (const auto& body : *scene->bodies) {
+		const auto* sphere = body ? dynamic_cast<const Sphere*>(body->shape.get()) : nullptr;
+		if (!sphere || !body->isDynamic()) continue;
+		mass += body->state->mass;
+		volume += 4. / 3 * Mathr::PI * math::pow(sphere->radius, 3);
+	}
+	if (!(mass > 0))
+		hexmembrane::reject("PlatenDrive.maxVelocity", maxVelocity, "no movable sphere with a mass to take it from", "give a velocity > 0 in m/s");
+	return approachNumber * math::sqrt(stress * volume / mass);
+}
+
+void PlatenDrive::beginPhase(Real newTarget, const State& state, const Vector3r& unit)
+{
+	requireOrder();
+	phaseApproach = mode == "stress" ? approachVelocity() : NaN;
+	phaseMode = mode;
+	phaseDirection = direction;
+	phaseTarget = newTarget;
+	phaseDuration = rampTime;
+	phaseTime = 0;
+	phaseVelocity = state.vel.dot(unit);
+	phaseForce = force;
+	phaseSettled = false;
+}
+
+Real PlatenDrive::sumStiffness(const Vector3r& unit) const
+{
+	Real sum = 0;
+	for (const auto& other : Body::byId(platen, scene)->intrs) {
+		const Interaction& contact = *other.second;
+		if (!contact.isReal()) continue;
+		if (!math::isnan(contactStiffness)) return contactStiffness;
+		const auto* geom = dynamic_cast<const GenericSpheresContact*>(contact.geom.get());
+		const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
+		if (!geom || !phys)
+			hexmembrane::reject("PlatenDrive.contactStiffness", contactStiffness,
+			                    "contacts of " + contact.phys->getClassName() + " do not tell their stiffness",
+			                    "give the stiffness of all contacts together in N/m");
+		const auto* shear = dynamic_cast<const NormShearPhys*>(phys);
+		const Real along = geom->normal.dot(unit);
+		const Real squared = along * along;
+		sum += phys->kn * squared + (shear ? shear->ks * (1 - squared) : 0);
+	}
+	return sum;
+}
+
+Real PlatenDrive::servoStep(Real velocityNow)
+{
+	const Real dt = scene->dt;
+	const Real wanted = phaseForce + (phaseTarget - phaseForce) * hexmembrane::rampWeight(phaseTime, phaseDuration);
+	if (stiffness > 0) {
+		const hexmembrane::PlatenServo servo = hexmembrane::makePlatenServo(stiffness, dt, phaseTarget, damping, mass, phaseApproach);
+		return hexmembrane::servoVelocity(servo, velocityNow, dt, wanted, force);
+	}
+	// Nothing to hold on to: a given mass accelerates as it does in nature, up to the velocity of the approach.
+	if (math::isnan(mass)) return phaseApproach;
+	return hexmembrane::servoVelocity({mass, 0, phaseApproach}, velocityNow, dt, wanted, force);
+}
+
+void PlatenDrive::requireReached(Real newTarget)
+{
+	settled = phaseTime >= phaseDuration && math::abs(force - newTarget) <= tolerance * newTarget;
+	phaseSettled |= settled;
+	if (phaseSettled || !(phaseTime > timeLimit)) return;
+	stop("PlatenDrive.timeLimit = " + hexmembrane::formatNumber(timeLimit) + ": platen " + std::to_string(platen) + " carries " +
+	     hexmembrane::formatNumber(force) + " N of " + hexmembrane::formatNumber(newTarget) + " N after this time, at iteration " +
+	     std::to_string(scene->iter) + "; fix: is there a specimen in its way? give a longer timeLimit, or a larger maxVelocity");
+}
+
+void PlatenDrive::action()
+{
+	State& state = requirePlaten();
+	requireSettings();
+	const Vector3r unit = direction.normalized();
+	const Real newTarget = target(static_cast<const Platen&>(*Body::byId(platen, scene)->shape));
+
+	scene->forces.sync();
+	record(state, 0 - scene->forces.getForce(platen).dot(unit), unit); // 0 - x: no force is 0, not -0
+	if (mode != phaseMode || newTarget != phaseTarget || direction != phaseDirection) beginPhase(newTarget, state, unit);
+
+	Real next = newTarget;
+	if (mode == "stress") {
+		requireReached(newTarget);
+		stiffness = sumStiffness(unit);
+		next = servoStep(state.vel.dot(unit));
+	} else {
+		settled = false;
+	}
+	// The velocity set here holds half a step later, midway to the next position.
+	const Real weight = hexmembrane::rampWeight(phaseTime + 0.5 * scene->dt, phaseDuration);
+	state.vel = (weight * next + (1 - weight) * phaseVelocity) * unit;
+	state.angVel = Vector3r::Zero();
+	state.blockedDOFs = State::DOF_ALL;
+	state.isDamped = false; // else NewtonIntegrator books a dissipation that does not take place
+	phaseTime += scene->dt;
+}
+
+} // namespace yade
