@@ -398,3 +398,9 @@ def test_missingSizeEndsTheRunWithItsMessage():
 	run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=300)
 	assert run.returncode != 0
 	assert "Platen.height = nan: not given" in run.stderr + run.stdout
+
+
+def test_drawFunctorIsRegistered():
+	"""YADE's renderer finds it by its base class."""
+	functor = yade.Gl1_Platen()
+	assert isinstance(functor, yade.GlShapeFunctor) and functor.slices == 48
