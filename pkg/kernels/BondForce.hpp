@@ -14,12 +14,12 @@ namespace hexmembrane {
 ///   breakage N > tensileStrength: both forces become zero. |Fs| > shearStrength: the bond breaks too, and only what friction can hold is kept.
 ///   broken   no tension; in compression C = kn (L0 - d) the shear force is limited to friction * C
 struct BondLaw {
-	double kn              = std::numeric_limits<double>::quiet_NaN(); ///< N/m, > 0
-	double ks              = 0;                                        ///< N/m, >= 0; 0: central forces, rotations are not needed
-	double tensileStrength = std::numeric_limits<double>::infinity();  ///< N
-	double shearStrength   = std::numeric_limits<double>::infinity();  ///< N
-	double friction        = 0;                                        ///< coefficient, of broken bonds only
-	bool   tensionOnly     = false;                                    ///< with ks = 0 only
+	double kn = std::numeric_limits<double>::quiet_NaN();             ///< N/m, > 0
+	double ks = 0;                                                    ///< N/m, >= 0; 0: central forces, rotations are not needed
+	double tensileStrength = std::numeric_limits<double>::infinity(); ///< N
+	double shearStrength = std::numeric_limits<double>::infinity();   ///< N
+	double friction = 0;                                              ///< coefficient, of broken bonds only
+	bool tensionOnly = false;                                         ///< with ks = 0 only
 
 	/// Nothing but central springs that never break: the fast path.
 	bool central() const;
@@ -30,8 +30,8 @@ struct BondLaw {
 /// What a bond remembers. Sizes: HexStencil::bondCount(), or 0 where the law does not need it.
 struct BondState {
 	std::vector<double> restLength; ///< L0 (m)
-	std::vector<Vec3>   shear;      ///< shear force on the bond's first particle (N)
-	std::vector<int>    broken;     ///< 0 or 1
+	std::vector<Vec3> shear;        ///< shear force on the bond's first particle (N)
+	std::vector<int> broken;        ///< 0 or 1
 };
 
 /// All bonds of a hexagonal tube in one sweep over padded rows. Forces of the bonds are stored first and then gathered particle by particle in a fixed
@@ -65,8 +65,8 @@ private:
 	void generalRow(BondState& state, int family, int k, double dt);
 	void gather(const std::vector<RingField>& perBond, double signOfFarEnd, RingField& perParticle) const;
 
-	HexStencil             stencil;
-	BondLaw                law;
+	HexStencil stencil;
+	BondLaw law;
 	std::vector<RingField> bondForce, bondTorque; ///< one field a family
 };
 

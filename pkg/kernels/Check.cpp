@@ -19,7 +19,10 @@ void reject(const std::string& parameter, const std::string& value, const std::s
 	throw std::invalid_argument(parameter + " = " + value + ": " + wrong + "; fix: " + fix);
 }
 
-void reject(const std::string& parameter, double value, const std::string& wrong, const std::string& fix) { reject(parameter, formatNumber(value), wrong, fix); }
+void reject(const std::string& parameter, double value, const std::string& wrong, const std::string& fix)
+{
+	reject(parameter, formatNumber(value), wrong, fix);
+}
 
 void reject(const std::string& parameter, int value, const std::string& wrong, const std::string& fix) { reject(parameter, std::to_string(value), wrong, fix); }
 

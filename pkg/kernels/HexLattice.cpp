@@ -24,12 +24,12 @@ void check(const HexLatticeSpec& s)
 /// Number of spheres a ring and the radii that follow; see the class comment.
 void closeRing(const HexLatticeSpec& s, HexLattice& out)
 {
-	const bool   outside = s.placement == Placement::outside;
-	const double wanted  = outside ? s.specimenRadius + s.particleRadius : s.specimenRadius;
-	const double sine    = s.particleRadius / wanted;
-	const long   n       = sine < 1 ? std::lround(M_PI / std::asin(sine)) : 0;
+	const bool outside = s.placement == Placement::outside;
+	const double wanted = outside ? s.specimenRadius + s.particleRadius : s.specimenRadius;
+	const double sine = s.particleRadius / wanted;
+	const long n = sine < 1 ? std::lround(M_PI / std::asin(sine)) : 0;
 	if (n < minPerRing) {
-		const double s6  = std::sin(M_PI / minPerRing);
+		const double s6 = std::sin(M_PI / minPerRing);
 		const double max = s.specimenRadius * (outside ? s6 / (1 - s6) : s6);
 		reject("HexMembrane.particleRadius", s.particleRadius, "too coarse, a ring would have " + std::to_string(n) + " spheres",
 		       "at most " + formatNumber(max) + " m for this specimen (6 spheres a ring)");
@@ -37,11 +37,11 @@ void closeRing(const HexLatticeSpec& s, HexLattice& out)
 	out.perRing = static_cast<int>(n);
 
 	const double closed = std::sin(M_PI / static_cast<double>(n));
-	out.sphereRadius    = outside ? s.specimenRadius * closed / (1 - closed) : s.particleRadius;
-	out.centreRadius    = out.sphereRadius / closed;
-	out.innerRadius     = out.centreRadius - out.sphereRadius;
-	const double c      = std::cos(M_PI / (2. * static_cast<double>(n)));
-	out.ringSpacing     = 2 * out.sphereRadius * std::sqrt(1 - 1 / (4 * c * c));
+	out.sphereRadius = outside ? s.specimenRadius * closed / (1 - closed) : s.particleRadius;
+	out.centreRadius = out.sphereRadius / closed;
+	out.innerRadius = out.centreRadius - out.sphereRadius;
+	const double c = std::cos(M_PI / (2. * static_cast<double>(n)));
+	out.ringSpacing = 2 * out.sphereRadius * std::sqrt(1 - 1 / (4 * c * c));
 }
 
 /// Rows over the specimen's height, checked against the rows that the groups take from it.
@@ -67,8 +67,7 @@ std::vector<std::array<int, 2>> bondList(const HexStencil& tube)
 	for (int family = 0; family < 3; ++family)
 		for (int k = 0; k < tube.familyRows(family); ++k) {
 			const auto far = HexStencil::farEnd(family, k);
-			for (int i = 0; i < tube.perRing; ++i)
-				bonds.push_back({ tube.at(k, i), tube.at(k + far[0], i + far[1]) });
+			for (int i = 0; i < tube.perRing; ++i) bonds.push_back({tube.at(k, i), tube.at(k + far[0], i + far[1])});
 		}
 	return bonds;
 }
@@ -78,8 +77,8 @@ void appendTriangles(const HexStencil& tube, int k, std::vector<std::array<int, 
 	for (int i = 0; i < tube.perRing; ++i) {
 		// the upper right neighbour of (k, i) is the upper left one of (k, i + 1): it stands between them
 		const int above = i + HexStencil::right(k);
-		out.push_back({ tube.at(k, i), tube.at(k, i + 1), tube.at(k + 1, above) });
-		out.push_back({ tube.at(k, i + 1), tube.at(k + 1, above + 1), tube.at(k + 1, above) });
+		out.push_back({tube.at(k, i), tube.at(k, i + 1), tube.at(k + 1, above)});
+		out.push_back({tube.at(k, i + 1), tube.at(k + 1, above + 1), tube.at(k + 1, above)});
 	}
 }
 
@@ -89,15 +88,15 @@ HexLattice makeHexLattice(const HexLatticeSpec& spec)
 	HexLattice l;
 	closeRing(spec, l);
 	const int rows = specimenRows(spec, l);
-	l.rings        = rows + 2 * spec.oRingRows;
+	l.rings = rows + 2 * spec.oRingRows;
 
 	const int n = l.perRing;
 	l.positions.reserve(l.particles());
 	l.groups.reserve(l.particles());
 	for (int k = 0; k < l.rings; ++k) {
-		const double z       = 0.5 * spec.specimenHeight + (k - 0.5 * (l.rings - 1)) * l.ringSpacing;
-		const int    fromEnd = std::min(k, l.rings - 1 - k);
-		const int    group   = fromEnd < spec.oRingRows ? 1 : fromEnd < spec.oRingRows + spec.platenRows ? 2 : 3;
+		const double z = 0.5 * spec.specimenHeight + (k - 0.5 * (l.rings - 1)) * l.ringSpacing;
+		const int fromEnd = std::min(k, l.rings - 1 - k);
+		const int group = fromEnd < spec.oRingRows ? 1 : fromEnd < spec.oRingRows + spec.platenRows ? 2 : 3;
 		for (int i = 0; i < n; ++i) {
 			const double angle = 2 * M_PI * (i + 0.5 * (k % 2)) / n;
 			l.positions.emplace_back(l.centreRadius * std::cos(angle), l.centreRadius * std::sin(angle), z);
@@ -106,8 +105,7 @@ HexLattice makeHexLattice(const HexLatticeSpec& spec)
 	}
 	l.bonds = bondList(l);
 	l.triangles.reserve(2 * n * (l.rings - 1));
-	for (int k = 0; k + 1 < l.rings; ++k)
-		appendTriangles(l, k, l.triangles);
+	for (int k = 0; k + 1 < l.rings; ++k) appendTriangles(l, k, l.triangles);
 	return l;
 }
 

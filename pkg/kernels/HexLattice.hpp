@@ -18,12 +18,12 @@ enum class Placement {
 
 /// What a hexagonal membrane is asked to be. Lengths in m.
 struct HexLatticeSpec {
-	double    specimenRadius;                 ///< > 0
-	double    specimenHeight;                 ///< > 0
-	double    particleRadius;                 ///< > 0; see HexLattice::sphereRadius for what becomes of it
-	Placement placement  = Placement::outside;
-	int       oRingRows  = 2;                 ///< rows beyond each end of the specimen (group 1), >= 0
-	int       platenRows = 2;                 ///< rows at each platen inside the specimen's ends (group 2), >= 0
+	double specimenRadius; ///< > 0
+	double specimenHeight; ///< > 0
+	double particleRadius; ///< > 0; see HexLattice::sphereRadius for what becomes of it
+	Placement placement = Placement::outside;
+	int oRingRows = 2;  ///< rows beyond each end of the specimen (group 1), >= 0
+	int platenRows = 2; ///< rows at each platen inside the specimen's ends (group 2), >= 0
 };
 
 /// A hexagonal membrane: rings of touching spheres round the z axis, every other ring turned by half a spacing. The specimen stands on z = 0.
@@ -38,8 +38,8 @@ struct HexLattice : HexStencil {
 	double innerRadius;  ///< centreRadius - sphereRadius: the side of the soil (m)
 	double ringSpacing;  ///< distance of neighbouring rings along the axis (m)
 
-	std::vector<Vec3>               positions; ///< centres; particle i of ring k (from the bottom) at k perRing + i
-	std::vector<int>                groups;    ///< 1 O-ring, 2 beside a platen, 3 main body
+	std::vector<Vec3> positions;               ///< centres; particle i of ring k (from the bottom) at k perRing + i
+	std::vector<int> groups;                   ///< 1 O-ring, 2 beside a platen, 3 main body
 	std::vector<std::array<int, 3>> triangles; ///< 2 n (rings - 1), counter-clockwise seen from outside
 	std::vector<std::array<int, 2>> bonds;     ///< n (3 rings - 2), in the order of HexStencil
 };

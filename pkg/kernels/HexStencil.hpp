@@ -12,7 +12,7 @@ namespace hexmembrane {
 ///   family 2, row k: (k, i) - (k + 1, i + right(k)) index (2 rings - 1) n + k n + i     rings - 1 rows
 struct HexStencil {
 	int perRing = 0;
-	int rings   = 0;
+	int rings = 0;
 
 	int particles() const { return perRing * rings; }
 	int bondCount() const { return perRing * (3 * rings - 2); }
@@ -29,8 +29,8 @@ struct HexStencil {
 	/// Shift in (ring, i) of the far end of a bond of `family` that starts in ring k.
 	static std::array<int, 2> farEnd(int family, int k)
 	{
-		if (family == 0) return { 0, 1 };
-		return { 1, family == 1 ? left(k) : right(k) };
+		if (family == 0) return {0, 1};
+		return {1, family == 1 ? left(k) : right(k)};
 	}
 };
 

@@ -12,7 +12,7 @@ SheetConstants sheetFromBonds(const BondStiffness& b)
 	requirePositive("MembraneBonds.kn", b.normal, "N/m");
 	requireNonNegative("MembraneBonds.ks", b.shear, "N/m");
 	const double sum = 3 * b.normal + b.shear;
-	return { 2 * std::sqrt(3.) * b.normal * (b.normal + b.shear) / sum, (b.normal - b.shear) / sum };
+	return {2 * std::sqrt(3.) * b.normal * (b.normal + b.shear) / sum, (b.normal - b.shear) / sum};
 }
 
 BondStiffness bondsFromSheet(const SheetConstants& s)
@@ -26,7 +26,7 @@ BondStiffness bondsFromSheet(const SheetConstants& s)
 		       "1/3 for central springs (ks = 0), which is nearest to rubber");
 	const double kn = s.stretch / (std::sqrt(3.) * (1 - s.poisson));
 	const double ks = kn * (1 - 3 * s.poisson) / (1 + s.poisson);
-	return { kn, s.poisson > third - eps ? 0. : ks };
+	return {kn, s.poisson > third - eps ? 0. : ks};
 }
 
 } // namespace hexmembrane

@@ -10,22 +10,19 @@ namespace hexmembrane {
 TriangleMesh::TriangleMesh(int vertexCount, std::vector<std::array<int, 3>> tris) : triangles(std::move(tris)), start(vertexCount + 1, 0)
 {
 	for (size_t t = 0; t < triangles.size(); ++t) {
-		const auto& v    = triangles[t];
-		const auto  name = "MembranePressure.triangles[" + std::to_string(t) + "]";
+		const auto& v = triangles[t];
+		const auto name = "MembranePressure.triangles[" + std::to_string(t) + "]";
 		for (int corner : v)
 			if (corner < 0 || corner >= vertexCount)
 				reject(name, corner, "no such vertex", "indices from 0 to " + std::to_string(vertexCount - 1) + " into ids");
 		if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) reject(name, v[0] == v[1] ? v[0] : v[2], "the same vertex twice", "three different vertices");
-		for (int corner : v)
-			++start[corner + 1];
+		for (int corner : v) ++start[corner + 1];
 	}
-	for (int v = 0; v < vertexCount; ++v)
-		start[v + 1] += start[v];
+	for (int v = 0; v < vertexCount; ++v) start[v + 1] += start[v];
 	around.resize(start.back());
 	std::vector<int> next(start.begin(), start.end() - 1);
 	for (size_t t = 0; t < triangles.size(); ++t)
-		for (int corner : triangles[t])
-			around[next[corner]++] = static_cast<int>(t);
+		for (int corner : triangles[t]) around[next[corner]++] = static_cast<int>(t);
 }
 
 void TriangleMesh::areaVectors(const std::vector<Vec3>& x, std::vector<Vec3>& out) const
@@ -36,7 +33,7 @@ void TriangleMesh::areaVectors(const std::vector<Vec3>& x, std::vector<Vec3>& ou
 	for (long t = 0; t < count; ++t) {
 		const auto& v = triangles[t];
 		const Vec3& a = x[v[0]];
-		out[t]        = (x[v[1]] - a).cross(x[v[2]] - a);
+		out[t] = (x[v[1]] - a).cross(x[v[2]] - a);
 	}
 }
 
@@ -50,8 +47,7 @@ void sumRound(const std::vector<int>& start, const std::vector<int>& around, con
 #pragma omp parallel for schedule(static)
 	for (long v = 0; v < count; ++v) {
 		Value sum = zero;
-		for (int e = start[v]; e < start[v + 1]; ++e)
-			sum += in[around[e]];
+		for (int e = start[v]; e < start[v + 1]; ++e) sum += in[around[e]];
 		out[v] = sum;
 	}
 }
@@ -86,23 +82,20 @@ void PressureForce::compute(double pressure, const std::vector<Vec3>& x, std::ve
 		const long count = static_cast<long>(x.size());
 		inner.resize(count);
 #pragma omp parallel for schedule(static)
-		for (long i = 0; i < count; ++i)
-			inner[i] = x[i] - offset * normals[i];
+		for (long i = 0; i < count; ++i) inner[i] = x[i] - offset * normals[i];
 		mesh.areaVectors(inner, twiceArea);
 	}
 	mesh.sumAtVertices(twiceArea, force);
 	const double factor = -pressure / 6;
-	const long   count  = static_cast<long>(force.size());
+	const long count = static_cast<long>(force.size());
 #pragma omp parallel for schedule(static)
-	for (long i = 0; i < count; ++i)
-		force[i] *= factor;
+	for (long i = 0; i < count; ++i) force[i] *= factor;
 }
 
 void PressureForce::vertexAreas(std::vector<double>& out) const
 {
 	std::vector<double> third(twiceArea.size());
-	for (size_t t = 0; t < third.size(); ++t)
-		third[t] = twiceArea[t].norm() / 6;
+	for (size_t t = 0; t < third.size(); ++t) third[t] = twiceArea[t].norm() / 6;
 	mesh.sumAtVertices(third, out);
 }
 

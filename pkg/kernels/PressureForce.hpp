@@ -29,8 +29,8 @@ public:
 
 private:
 	std::vector<std::array<int, 3>> triangles;
-	std::vector<int>                start = { 0 }; ///< first entry of `around` of each vertex, and one past the last
-	std::vector<int>                around;        ///< triangles round each vertex, ascending
+	std::vector<int> start = {0}; ///< first entry of `around` of each vertex, and one past the last
+	std::vector<int> around;      ///< triangles round each vertex, ascending
 };
 
 /// Follower pressure on a triangulated surface, acting on the surface itself or on a parallel one `offset` further in.
@@ -60,8 +60,8 @@ public:
 	const TriangleMesh& surface() const { return mesh; }
 
 private:
-	TriangleMesh      mesh;
-	double            offset = 0;
+	TriangleMesh mesh;
+	double offset = 0;
 	std::vector<Vec3> twiceArea, normals, inner; ///< work arrays
 };
 

@@ -18,12 +18,10 @@ AreaRule areaRuleFromName(const std::string& name)
 RingShape ringShape(const HexStencil& tube, const std::vector<Vec3>& x, int k)
 {
 	const Vec3* first = x.data() + k * tube.perRing;
-	RingShape   shape { Vec3::Zero(), 0 };
-	for (int i = 0; i < tube.perRing; ++i)
-		shape.centre += first[i];
+	RingShape shape{Vec3::Zero(), 0};
+	for (int i = 0; i < tube.perRing; ++i) shape.centre += first[i];
 	shape.centre /= tube.perRing;
-	for (int i = 0; i < tube.perRing; ++i)
-		shape.radius += (first[i] - shape.centre).head<2>().norm();
+	for (int i = 0; i < tube.perRing; ++i) shape.radius += (first[i] - shape.centre).head<2>().norm();
 	shape.radius /= tube.perRing;
 	return shape;
 }
@@ -31,9 +29,9 @@ RingShape ringShape(const HexStencil& tube, const std::vector<Vec3>& x, int k)
 double particleArea(const HexStencil& tube, const std::vector<Vec3>& x, int k, double sphereRadius, AreaRule rule)
 {
 	if (rule == AreaRule::cube) return 4 * sphereRadius * sphereRadius;
-	const int    below = std::max(k - 1, 0), above = std::min(k + 1, tube.rings - 1);
+	const int below = std::max(k - 1, 0), above = std::min(k + 1, tube.rings - 1);
 	const double height = (ringShape(tube, x, above).centre[2] - ringShape(tube, x, below).centre[2]) / (above - below);
-	const double inner  = ringShape(tube, x, k).radius - sphereRadius;
+	const double inner = ringShape(tube, x, k).radius - sphereRadius;
 	return std::abs(height) * 2 * M_PI * std::max(inner, 0.) / tube.perRing;
 }
 

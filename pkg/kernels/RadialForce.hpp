@@ -20,7 +20,7 @@ AreaRule areaRuleFromName(const std::string& name);
 
 /// Present shape of a ring: centroid of its particles and their mean distance from the vertical axis through it (m).
 struct RingShape {
-	Vec3   centre;
+	Vec3 centre;
 	double radius;
 };
 

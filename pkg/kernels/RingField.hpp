@@ -14,32 +14,31 @@ namespace hexmembrane {
 class RingField {
 public:
 	RingField() = default;
-	RingField(int perRing, int rows) : n(perRing), stride(perRing + 2), data(3 * size_t(stride) * rows, 0.), plane(size_t(stride) * rows) { }
+	RingField(int perRing, int rows) : n(perRing), stride(perRing + 2), data(3 * size_t(stride) * rows, 0.), plane(size_t(stride) * rows) {}
 
-	double*       row(int axis, int k) { return data.data() + axis * plane + size_t(k) * stride + 1; }
+	double* row(int axis, int k) { return data.data() + axis * plane + size_t(k) * stride + 1; }
 	const double* row(int axis, int k) const { return data.data() + axis * plane + size_t(k) * stride + 1; }
 
 	void set(int k, int i, const Vec3& v)
 	{
-		for (int a = 0; a < 3; ++a)
-			row(a, k)[i] = v[a];
+		for (int a = 0; a < 3; ++a) row(a, k)[i] = v[a];
 	}
-	Vec3 get(int k, int i) const { return { row(0, k)[i], row(1, k)[i], row(2, k)[i] }; }
+	Vec3 get(int k, int i) const { return {row(0, k)[i], row(1, k)[i], row(2, k)[i]}; }
 
 	/// Repeats the ends of row k beyond each other.
 	void wrap(int k)
 	{
 		for (int a = 0; a < 3; ++a) {
 			double* r = row(a, k);
-			r[-1]     = r[n - 1];
-			r[n]      = r[0];
+			r[-1] = r[n - 1];
+			r[n] = r[0];
 		}
 	}
 
 private:
-	int                 n = 0, stride = 0;
+	int n = 0, stride = 0;
 	std::vector<double> data;
-	size_t              plane = 0;
+	size_t plane = 0;
 };
 
 } // namespace hexmembrane

@@ -14,8 +14,7 @@ inline double trapezoidalWork(const std::vector<Vec3>& force0, const std::vector
 {
 	if (force0.size() != force1.size() || x0.size() != force0.size() || x1.size() != force1.size()) return 0;
 	double work = 0;
-	for (size_t i = 0; i < force1.size(); ++i)
-		work += 0.5 * (force0[i] + force1[i]).dot(x1[i] - x0[i]);
+	for (size_t i = 0; i < force1.size(); ++i) work += 0.5 * (force0[i] + force1[i]).dot(x1[i] - x0[i]);
 	return work;
 }
 

@@ -13,24 +13,25 @@ namespace {
 
 bool same(const hexmembrane::BondLaw& a, const hexmembrane::BondLaw& b)
 {
-	return a.kn == b.kn && a.ks == b.ks && a.tensileStrength == b.tensileStrength && a.shearStrength == b.shearStrength && a.friction == b.friction
-	        && a.tensionOnly == b.tensionOnly;
+	return a.kn == b.kn && a.ks == b.ks && a.tensileStrength == b.tensileStrength && a.shearStrength == b.shearStrength && a.friction == b.friction &&
+	       a.tensionOnly == b.tensionOnly;
 }
 
 } // namespace
 
 hexmembrane::BondLaw MembraneBonds::law() const
 {
-	hexmembrane::BondLaw l { kn, math::isnan(ks) ? 0. : ks, tensileStrength, shearStrength, friction, tensionOnly };
-	const bool           sheet = !math::isnan(young) || !math::isnan(thickness) || !math::isnan(poisson);
+	hexmembrane::BondLaw l{kn, math::isnan(ks) ? 0. : ks, tensileStrength, shearStrength, friction, tensionOnly};
+	const bool sheet = !math::isnan(young) || !math::isnan(thickness) || !math::isnan(poisson);
 	if (sheet && !(math::isnan(kn) && math::isnan(ks)))
-		hexmembrane::reject("MembraneBonds.kn", kn, "stiffness is given twice, as springs and as a sheet", "either kn and ks, or young, thickness and poisson");
+		hexmembrane::reject("MembraneBonds.kn", kn, "stiffness is given twice, as springs and as a sheet",
+		                    "either kn and ks, or young, thickness and poisson");
 	if (sheet) {
 		hexmembrane::requirePositive("MembraneBonds.young", young, "Pa");
 		hexmembrane::requirePositive("MembraneBonds.thickness", thickness, "m");
-		const auto springs = hexmembrane::bondsFromSheet({ young * thickness, poisson });
-		l.kn               = springs.normal;
-		l.ks               = springs.shear;
+		const auto springs = hexmembrane::bondsFromSheet({young * thickness, poisson});
+		l.kn = springs.normal;
+		l.ks = springs.shear;
 	}
 	l.check();
 	return l;
@@ -47,19 +48,19 @@ void MembraneBonds::prepare()
 		                    "HexMembrane(rotations=True), or ks = 0 (poisson = 1/3)");
 	const size_t bonds = membrane->stencil().bondCount();
 	if ((!broken.empty() && broken.size() != bonds) || (!shearForces.empty() && shearForces.size() != bonds))
-		throw std::runtime_error("MembraneBonds: the stored state of " + std::to_string(std::max(broken.size(), shearForces.size())) + " bonds does not fit a membrane of "
-		                         + std::to_string(bonds) + "; fix: a new MembraneBonds for another membrane");
+		throw std::runtime_error("MembraneBonds: the stored state of " + std::to_string(std::max(broken.size(), shearForces.size())) +
+		                         " bonds does not fit a membrane of " + std::to_string(bonds) + "; fix: a new MembraneBonds for another membrane");
 	kernel.reset(new hexmembrane::BondForce(membrane->stencil(), wanted));
 	state.restLength.assign(bonds, 2 * membrane->sphereRadius);
-	built    = wanted;
+	built = wanted;
 	builtFor = membrane.get();
 }
 
 void MembraneBonds::gatherRing(int k, vector<int>& missing)
 {
-	const int   n        = membrane->perRing;
-	const bool  rotating = built.ks > 0;
-	const auto& bodies   = *scene->bodies;
+	const int n = membrane->perRing;
+	const bool rotating = built.ks > 0;
+	const auto& bodies = *scene->bodies;
 	for (int i = 0; i < n; ++i) {
 		const Body* b = livingBody(bodies, membrane->ids[k * n + i]);
 		if (!b) {
@@ -94,8 +95,7 @@ void MembraneBonds::action()
 	// one slot a ring for what goes wrong: exceptions must not leave a parallel loop
 	vector<int> missing(membrane->rings, -1), bad(membrane->rings, -1);
 #pragma omp parallel for schedule(static)
-	for (int k = 0; k < membrane->rings; ++k)
-		gatherRing(k, missing);
+	for (int k = 0; k < membrane->rings; ++k) gatherRing(k, missing);
 	for (int m : missing)
 		if (m >= 0) membrane->body(*scene, m, "MembraneBonds"); // throws
 
@@ -107,8 +107,7 @@ void MembraneBonds::action()
 	state.broken.swap(broken);
 
 #pragma omp parallel for schedule(static)
-	for (int k = 0; k < membrane->rings; ++k)
-		scatterRing(k, bad);
+	for (int k = 0; k < membrane->rings; ++k) scatterRing(k, bad);
 	for (int b : bad)
 		if (b >= 0) throwNotFinite("MembraneBonds: bond force", membrane->ids[b], *scene);
 	if (scene->trackEnergy) scene->energy->add(elasticEnergy(), "elastMembrane", energyIndex, /*reset*/ true);
@@ -135,8 +134,7 @@ vector<Real> MembraneBonds::normalForces()
 	requireStepped("normalForces");
 	vector<Real> forces(membrane->stencil().bondCount());
 	state.broken.swap(broken);
-	for (size_t b = 0; b < forces.size(); ++b)
-		forces[b] = kernel->normalForce(state, static_cast<int>(b));
+	for (size_t b = 0; b < forces.size(); ++b) forces[b] = kernel->normalForce(state, static_cast<int>(b));
 	state.broken.swap(broken);
 	return forces;
 }

@@ -16,24 +16,24 @@ class MembraneBonds : public GlobalEngine {
 public:
 	void action() override;
 
-	Real         elasticEnergy();
-	Real         criticalTimeStep() const;
+	Real elasticEnergy();
+	Real criticalTimeStep() const;
 	vector<Real> normalForces();
-	int          brokenCount() const;
+	int brokenCount() const;
 
 private:
 	hexmembrane::BondLaw law() const;
-	void                 prepare();
-	void                 gatherRing(int k, vector<int>& missing);
-	void                 scatterRing(int k, vector<int>& bad);
-	void                 requireStepped(const char* what) const;
+	void prepare();
+	void gatherRing(int k, vector<int>& missing);
+	void scatterRing(int k, vector<int>& bad);
+	void requireStepped(const char* what) const;
 
 	// Caches: rebuilt from the attributes when they are missing or other than when they were built.
 	std::unique_ptr<hexmembrane::BondForce> kernel;
-	hexmembrane::BondLaw                    built;
-	const HexMembrane*                      builtFor = nullptr;
-	hexmembrane::BondState                  state;
-	int                                     energyIndex = -1;
+	hexmembrane::BondLaw built;
+	const HexMembrane* builtFor = nullptr;
+	hexmembrane::BondState state;
+	int energyIndex = -1;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneBonds,GlobalEngine,

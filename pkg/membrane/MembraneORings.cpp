@@ -12,8 +12,8 @@ const Body& MembraneORings::platen(Body::id_t id, const char* name) const
 {
 	const Body* b = livingBody(*scene->bodies, id);
 	if (!b)
-		throw std::runtime_error(string("MembraneORings.") + name + " = " + std::to_string(id)
-		                         + ": there is no such body; fix: give the platen's id, or mode='fixed'");
+		throw std::runtime_error(string("MembraneORings.") + name + " = " + std::to_string(id) +
+		                         ": there is no such body; fix: give the platen's id, or mode='fixed'");
 	return *b;
 }
 
@@ -22,14 +22,14 @@ void MembraneORings::action()
 	if (!membrane) throw std::runtime_error("MembraneORings.membrane = None: no membrane to act on; fix: MembraneORings(membrane=HexMembrane(...))");
 	membrane->requireGenerated("MembraneORings");
 	if (mode != "fixed" && mode != "platens") hexmembrane::reject("MembraneORings.mode", "'" + mode + "'", "unknown", "'fixed' or 'platens'");
-	const bool     riding = mode == "platens";
-	const Vector3r below  = riding ? platen(bottomPlaten, "bottomPlaten").state->vel : Vector3r::Zero();
-	const Vector3r above  = riding ? platen(topPlaten, "topPlaten").state->vel : Vector3r::Zero();
+	const bool riding = mode == "platens";
+	const Vector3r below = riding ? platen(bottomPlaten, "bottomPlaten").state->vel : Vector3r::Zero();
+	const Vector3r above = riding ? platen(topPlaten, "topPlaten").state->vel : Vector3r::Zero();
 
 	const int n = membrane->perRing;
 	for (int row = 0; row < membrane->oRingRows; ++row)
 		for (int i = 0; i < n; ++i) {
-			membrane->body(*scene, row * n + i, "MembraneORings")->state->vel                           = below;
+			membrane->body(*scene, row * n + i, "MembraneORings")->state->vel = below;
 			membrane->body(*scene, (membrane->rings - 1 - row) * n + i, "MembraneORings")->state->vel = above;
 		}
 }

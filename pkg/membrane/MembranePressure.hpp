@@ -14,28 +14,28 @@ class MembranePressure : public GlobalEngine {
 public:
 	void action() override;
 
-	Real             area() const;
-	Vector3r         resultant() const;
+	Real area() const;
+	Vector3r resultant() const;
 	vector<Vector3r> forces() const;
 
 private:
-	void                     prepare();
-	void                     prepareMembrane();
-	void                     prepareMesh();
-	void                     requireStepped(const char* what) const;
+	void prepare();
+	void prepareMembrane();
+	void prepareMesh();
+	void requireStepped(const char* what) const;
 
 	// Caches, rebuilt from the attributes
 	hexmembrane::PressureForce kernel;
-	vector<Body::id_t>         vertexIds;             //!< bodies that are the vertices of the mesh
-	vector<int>                loaded;                //!< vertices that receive their force
-	vector<Vector3r>           positions, force;      //!< of all vertices
-	vector<Vector3r>           loadedX, loadedForce;  //!< of the loaded ones
-	const HexMembrane*         builtFor = nullptr;
-	string                     builtSurface;
-	vector<Body::id_t>         builtIds;
-	vector<Vector3i>           builtTriangles;
-	Real                       builtOffset = NaN;
-	int                        energyIndex = -1;
+	vector<Body::id_t> vertexIds;          //!< bodies that are the vertices of the mesh
+	vector<int> loaded;                    //!< vertices that receive their force
+	vector<Vector3r> positions, force;     //!< of all vertices
+	vector<Vector3r> loadedX, loadedForce; //!< of the loaded ones
+	const HexMembrane* builtFor = nullptr;
+	string builtSurface;
+	vector<Body::id_t> builtIds;
+	vector<Vector3i> builtTriangles;
+	Real builtOffset = NaN;
+	int energyIndex = -1;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembranePressure,GlobalEngine,

@@ -12,7 +12,8 @@ YADE_PLUGIN((MembraneRadialServo));
 
 void MembraneRadialServo::prepare()
 {
-	if (!membrane) throw std::runtime_error("MembraneRadialServo.membrane = None: no membrane to act on; fix: MembraneRadialServo(membrane=HexMembrane(...))");
+	if (!membrane)
+		throw std::runtime_error("MembraneRadialServo.membrane = None: no membrane to act on; fix: MembraneRadialServo(membrane=HexMembrane(...))");
 	membrane->requireGenerated("MembraneRadialServo");
 	hexmembrane::requireFinite("MembraneRadialServo.pressure", pressure, "Pa");
 	hexmembrane::requireNonNegative("MembraneRadialServo.gain", gain, "1");
@@ -24,7 +25,8 @@ void MembraneRadialServo::prepare()
 	for (int k = 0; k < membrane->rings; ++k)
 		if (membrane->groupOfRing(k) == 2) rows.push_back(k);
 	if (rows.empty())
-		throw std::runtime_error("MembraneRadialServo.membrane: it has no rows beside the platens (group 2); fix: HexMembrane(platenRows=2), or leave this engine out");
+		throw std::runtime_error(
+		        "MembraneRadialServo.membrane: it has no rows beside the platens (group 2); fix: HexMembrane(platenRows=2), or leave this engine out");
 }
 
 void MembraneRadialServo::correct()
@@ -32,8 +34,8 @@ void MembraneRadialServo::correct()
 	transmitted = membrane->transmittedPressure(2);
 	if (pressure == 0) return;
 	const Real wanted = factor + gain * (pressure - transmitted) / pressure;
-	factor            = std::min(std::max(wanted, 0.), maxFactor);
-	saturated         = factor != wanted;
+	factor = std::min(std::max(wanted, 0.), maxFactor);
+	saturated = factor != wanted;
 }
 
 void MembraneRadialServo::action()
@@ -43,11 +45,11 @@ void MembraneRadialServo::action()
 	membrane->gather(*scene, "MembraneRadialServo", positions);
 	if (gain > 0 && scene->iter % iterPeriod == 0) correct();
 
-	const auto       tube = membrane->stencil();
+	const auto tube = membrane->stencil();
 	vector<Vector3r> force, x;
 	area = 0;
 	for (int k : rows) {
-		const Real a      = hexmembrane::particleArea(tube, positions, k, membrane->sphereRadius, rule);
+		const Real a = hexmembrane::particleArea(tube, positions, k, membrane->sphereRadius, rule);
 		const auto centre = hexmembrane::ringShape(tube, positions, k).centre;
 		for (int i = 0; i < tube.perRing; ++i) {
 			const int v = tube.at(k, i);

@@ -16,9 +16,9 @@ private:
 	void prepare();
 	void correct();
 
-	vector<int>      rows;      //!< rings of group 2
+	vector<int> rows;           //!< rings of group 2
 	vector<Vector3r> positions; //!< all particles
-	int              energyIndex = -1;
+	int energyIndex = -1;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(MembraneRadialServo,GlobalEngine,

@@ -18,9 +18,8 @@ inline bool isFinite(const Vector3r& v) { return v.squaredNorm() < std::numeric_
 
 [[noreturn]] inline void throwNotFinite(const string& what, Body::id_t id, const Scene& scene)
 {
-	throw std::runtime_error(
-	        what + " on body " + std::to_string(id) + " is not finite at iteration " + std::to_string(scene.iter)
-	        + ": the run has lost its stability; fix: load the last checkpoint and use a shorter time step");
+	throw std::runtime_error(what + " on body " + std::to_string(id) + " is not finite at iteration " + std::to_string(scene.iter) +
+	                         ": the run has lost its stability; fix: load the last checkpoint and use a shorter time step");
 }
 
 } // namespace yade

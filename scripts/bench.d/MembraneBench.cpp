@@ -13,12 +13,12 @@ using namespace hexmembrane;
 namespace {
 
 /// The study's membrane; range(0) is the particle radius in micrometres: 500 (12,726 particles), 250 (50,702).
-HexLattice membrane(const benchmark::State& state) { return makeHexLattice({ 0.020, 0.080, state.range(0) * 1e-6, Placement::centred, 2, 2 }); }
+HexLattice membrane(const benchmark::State& state) { return makeHexLattice({0.020, 0.080, state.range(0) * 1e-6, Placement::centred, 2, 2}); }
 
 void perParticle(benchmark::State& state, size_t particles)
 {
-	state.counters["perParticle"] = benchmark::Counter(
-	        static_cast<double>(particles), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+	state.counters["perParticle"] =
+	        benchmark::Counter(static_cast<double>(particles), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 	state.counters["particles"] = static_cast<double>(particles);
 }
 
@@ -54,8 +54,8 @@ BondLaw law(double ks)
 void bondsCentral(benchmark::State& state)
 {
 	const HexLattice l = membrane(state);
-	BondState        bonds;
-	BondForce        kernel = loaded(l, law(0), bonds);
+	BondState bonds;
+	BondForce kernel = loaded(l, law(0), bonds);
 	for (auto _ : state) {
 		kernel.compute(bonds, 1e-6);
 		benchmark::DoNotOptimize(kernel.force.row(0, 0));
@@ -66,8 +66,8 @@ void bondsCentral(benchmark::State& state)
 void bondsWithShear(benchmark::State& state)
 {
 	const HexLattice l = membrane(state);
-	BondState        bonds;
-	BondForce        kernel = loaded(l, law(346), bonds);
+	BondState bonds;
+	BondForce kernel = loaded(l, law(346), bonds);
 	for (auto _ : state) {
 		kernel.compute(bonds, 1e-9);
 		benchmark::DoNotOptimize(kernel.force.row(0, 0));
@@ -77,8 +77,8 @@ void bondsWithShear(benchmark::State& state)
 
 void bondsReference(benchmark::State& state)
 {
-	const HexLattice     l = membrane(state);
-	BondState            bonds;
+	const HexLattice l = membrane(state);
+	BondState bonds;
 	reference::Particles p;
 	p.position = l.positions;
 	bonds.restLength.assign(l.bondCount(), 2 * l.sphereRadius);
@@ -91,8 +91,8 @@ void bondsReference(benchmark::State& state)
 
 void pressure(benchmark::State& state, bool inner)
 {
-	const HexLattice  l = membrane(state);
-	PressureForce     kernel(TriangleMesh(l.particles(), l.triangles), inner ? l.sphereRadius : 0);
+	const HexLattice l = membrane(state);
+	PressureForce kernel(TriangleMesh(l.particles(), l.triangles), inner ? l.sphereRadius : 0);
 	std::vector<Vec3> force;
 	for (auto _ : state) {
 		kernel.compute(1e5, l.positions, force);
@@ -104,8 +104,7 @@ void pressure(benchmark::State& state, bool inner)
 void pressureReference(benchmark::State& state)
 {
 	const HexLattice l = membrane(state);
-	for (auto _ : state)
-		benchmark::DoNotOptimize(reference::pressureForces(l.triangles, 1e5, l.positions, l.sphereRadius));
+	for (auto _ : state) benchmark::DoNotOptimize(reference::pressureForces(l.triangles, 1e5, l.positions, l.sphereRadius));
 	perParticle(state, l.particles());
 }
 

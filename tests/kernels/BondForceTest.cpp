@@ -14,14 +14,13 @@ constexpr double inf = std::numeric_limits<double>::infinity();
 
 BondLaw law(double kn, double ks = 0, double tensile = inf, double shear = inf, double friction = 0, bool tensionOnly = false)
 {
-	return { kn, ks, tensile, shear, friction, tensionOnly };
+	return {kn, ks, tensile, shear, friction, tensionOnly};
 }
 
 void load(RingField& field, const HexStencil& s, const std::vector<Vec3>& values)
 {
 	for (int k = 0; k < s.rings; ++k) {
-		for (int i = 0; i < s.perRing; ++i)
-			field.set(k, i, values[s.at(k, i)]);
+		for (int i = 0; i < s.perRing; ++i) field.set(k, i, values[s.at(k, i)]);
 		field.wrap(k);
 	}
 }
@@ -30,17 +29,16 @@ std::vector<Vec3> unload(const RingField& field, const HexStencil& s)
 {
 	std::vector<Vec3> values;
 	for (int k = 0; k < s.rings; ++k)
-		for (int i = 0; i < s.perRing; ++i)
-			values.push_back(field.get(k, i));
+		for (int i = 0; i < s.perRing; ++i) values.push_back(field.get(k, i));
 	return values;
 }
 
 /// A membrane with its bonds, fast and slow side by side.
 struct Pair {
-	HexLattice           tube = support::smallTube();
-	BondLaw              rule;
-	BondForce            fast;
-	BondState            fastState, slowState;
+	HexLattice tube = support::smallTube();
+	BondLaw rule;
+	BondForce fast;
+	BondState fastState, slowState;
 	reference::Particles p;
 
 	explicit Pair(const BondLaw& l) : rule(l), fast(tube, l)
@@ -69,14 +67,13 @@ struct Pair {
 /// Several steps of shaken motion; the largest difference of fast and slow.
 double worstDifference(const BondLaw& l, int* brokenBonds = nullptr)
 {
-	Pair         pair(l);
-	const double dt    = 1e-4;
-	double       worst = 0;
+	Pair pair(l);
+	const double dt = 1e-4;
+	double worst = 0;
 	for (unsigned s = 0; s < 5; ++s) {
 		pair.p.velocity = support::randomVectors(pair.tube.positions.size(), 2., 10 + s);
-		pair.p.spin     = support::randomVectors(pair.tube.positions.size(), 500., 20 + s);
-		for (size_t i = 0; i < pair.p.position.size(); ++i)
-			pair.p.position[i] += dt * pair.p.velocity[i];
+		pair.p.spin = support::randomVectors(pair.tube.positions.size(), 500., 20 + s);
+		for (size_t i = 0; i < pair.p.position.size(); ++i) pair.p.position[i] += dt * pair.p.velocity[i];
 		pair.step(dt);
 		worst = std::max(worst, relativeDifference(unload(pair.fast.force, pair.tube), pair.p.force));
 		if (l.ks > 0) worst = std::max(worst, relativeDifference(unload(pair.fast.torque, pair.tube), pair.p.torque));
@@ -122,10 +119,10 @@ TEST(BondForce, forceIsMinusGradientOfEnergy)
 	Pair pair(law(346));
 	support::shake(pair.p.position, 2e-4, 3);
 	pair.step(0);
-	const auto   force = unload(pair.fast.force, pair.tube);
-	const double h     = 1e-7;
-	double       worst = 0, size = 0;
-	for (const int v : { 0, 5, pair.tube.at(3, 0), pair.tube.at(4, pair.tube.perRing - 1), pair.tube.particles() - 1 })
+	const auto force = unload(pair.fast.force, pair.tube);
+	const double h = 1e-7;
+	double worst = 0, size = 0;
+	for (const int v : {0, 5, pair.tube.at(3, 0), pair.tube.at(4, pair.tube.perRing - 1), pair.tube.particles() - 1})
 		for (int a = 0; a < 3; ++a) {
 			double e[2];
 			for (int side = 0; side < 2; ++side) {
@@ -135,7 +132,7 @@ TEST(BondForce, forceIsMinusGradientOfEnergy)
 				e[side] = pair.fast.energy(pair.fastState);
 			}
 			worst = std::max(worst, std::abs(-(e[1] - e[0]) / (2 * h) - force[v][a]));
-			size  = std::max(size, force[v].norm());
+			size = std::max(size, force[v].norm());
 		}
 	EXPECT_LT(worst, 1e-6 * size) << "central differences: h^2 and rounding";
 }
@@ -144,11 +141,11 @@ TEST(BondForce, neitherResultantNorMoment)
 {
 	Pair pair(law(346, 173));
 	pair.p.velocity = support::randomVectors(pair.tube.positions.size(), 1., 5);
-	pair.p.spin     = support::randomVectors(pair.tube.positions.size(), 300., 6);
+	pair.p.spin = support::randomVectors(pair.tube.positions.size(), 300., 6);
 	support::shake(pair.p.position, 2e-4, 7);
 	pair.step(1e-4);
-	Vec3       resultant = Vec3::Zero(), moment = Vec3::Zero();
-	double     size = 0;
+	Vec3 resultant = Vec3::Zero(), moment = Vec3::Zero();
+	double size = 0;
 	const auto force = unload(pair.fast.force, pair.tube), torque = unload(pair.fast.torque, pair.tube);
 	for (size_t i = 0; i < force.size(); ++i) {
 		resultant += force[i];
@@ -162,49 +159,47 @@ TEST(BondForce, neitherResultantNorMoment)
 TEST(BondForce, rigidMotionLeavesShearUntouched)
 {
 	// a whole turn about a slanted axis in 2000 steps: the incremental shear must come back, its drift is that of the step (third order in the angle)
-	Pair       pair(law(346, 200));
+	Pair pair(law(346, 200));
 	const Vec3 axis = Vec3(1, 2, 3).normalized();
-	const int  steps = 2000;
+	const int steps = 2000;
 	const double dt = 1e-3, spin = 2 * M_PI / (steps * dt);
 	// load one bond first by sliding a single particle
 	pair.p.velocity[40] = Vec3(0, 0, 0.1);
 	pair.p.position[40] += dt * pair.p.velocity[40];
 	pair.step(dt);
 	std::vector<double> before;
-	for (const auto& s : pair.fastState.shear)
-		before.push_back(s.norm());
+	for (const auto& s : pair.fastState.shear) before.push_back(s.norm());
 	const auto start = pair.p.position;
 	for (int s = 1; s <= steps; ++s) {
 		const Eigen::AngleAxisd turn(2 * M_PI * s / steps, axis), half(2 * M_PI * (s - 0.5) / steps, axis);
 		for (size_t i = 0; i < start.size(); ++i) {
-			const Vec3 now       = turn * start[i];
-			pair.p.velocity[i]   = (now - pair.p.position[i]) / dt;
-			pair.p.position[i]   = now;
-			pair.p.spin[i]       = spin * axis;
+			const Vec3 now = turn * start[i];
+			pair.p.velocity[i] = (now - pair.p.position[i]) / dt;
+			pair.p.position[i] = now;
+			pair.p.spin[i] = spin * axis;
 		}
 		pair.step(dt);
 	}
 	ASSERT_GT(*std::max_element(before.begin(), before.end()), 0);
 	// the chord 2 sin(a/2) of the positions against the arc a of the spins: a^3/12 of a bond's length each step
 	const double drift = pair.rule.ks * 2 * pair.tube.sphereRadius * steps * std::pow(2 * M_PI / steps, 3) / 12;
-	for (size_t b = 0; b < before.size(); ++b)
-		ASSERT_NEAR(pair.fastState.shear[b].norm(), before[b], 1.2 * drift) << b;
+	for (size_t b = 0; b < before.size(); ++b) ASSERT_NEAR(pair.fastState.shear[b].norm(), before[b], 1.2 * drift) << b;
 }
 
 TEST(BondForce, breaksInTensionAndCarriesNoTensionAfter)
 {
-	Pair         pair(law(1000, 0, 0.1));
+	Pair pair(law(1000, 0, 0.1));
 	const double limit = 0.1 / 1000;
 	// lift the whole upper end: all inter-ring bonds of one row stretch alike
-	for (const double lift : { 0.5 * limit, 3 * limit, 0.5 * limit }) {
+	for (const double lift : {0.5 * limit, 3 * limit, 0.5 * limit}) {
 		pair.p.position = pair.tube.positions;
 		for (int k = 4; k < pair.tube.rings; ++k)
-			for (int i = 0; i < pair.tube.perRing; ++i)
-				pair.p.position[pair.tube.at(k, i)][2] += lift;
+			for (int i = 0; i < pair.tube.perRing; ++i) pair.p.position[pair.tube.at(k, i)][2] += lift;
 		pair.step(0);
-		const int  broken = std::count(pair.fastState.broken.begin(), pair.fastState.broken.end(), 1);
-		const auto force  = unload(pair.fast.force, pair.tube);
-		if (lift < limit && broken == 0) EXPECT_GT(force[pair.tube.at(3, 0)][2], 0);
+		const int broken = std::count(pair.fastState.broken.begin(), pair.fastState.broken.end(), 1);
+		const auto force = unload(pair.fast.force, pair.tube);
+		if (lift < limit && broken == 0)
+			EXPECT_GT(force[pair.tube.at(3, 0)][2], 0);
 		else {
 			EXPECT_EQ(broken, 2 * pair.tube.perRing);
 			EXPECT_EQ(force[pair.tube.at(3, 0)].norm(), 0) << "lift " << lift;
@@ -215,11 +210,9 @@ TEST(BondForce, breaksInTensionAndCarriesNoTensionAfter)
 TEST(BondForce, tensionOnlyCarriesNoCompression)
 {
 	Pair pair(law(346, 0, inf, inf, 0, true));
-	for (auto& x : pair.p.position)
-		x *= 0.97;
+	for (auto& x : pair.p.position) x *= 0.97;
 	pair.step(0);
-	for (const auto& f : unload(pair.fast.force, pair.tube))
-		ASSERT_EQ(f.norm(), 0);
+	for (const auto& f : unload(pair.fast.force, pair.tube)) ASSERT_EQ(f.norm(), 0);
 }
 
 TEST(BondForce, coincidentParticlesGiveNoNan)
@@ -233,7 +226,7 @@ TEST(BondForce, coincidentParticlesGiveNoNan)
 TEST(BondForce, threadsDoNotChangeABit)
 {
 	std::vector<std::vector<Vec3>> results;
-	for (const int threads : { 1, 2, 3 }) {
+	for (const int threads : {1, 2, 3}) {
 		omp_set_num_threads(threads);
 		Pair pair(law(346, 100));
 		pair.p.velocity = support::randomVectors(pair.tube.positions.size(), 1., 5);

@@ -24,7 +24,7 @@ HexLattice randomClosedMesh(unsigned seed)
 
 std::vector<Vec3> forces(const HexLattice& mesh, double offset)
 {
-	PressureForce     kernel(TriangleMesh(static_cast<int>(mesh.positions.size()), mesh.triangles), offset);
+	PressureForce kernel(TriangleMesh(static_cast<int>(mesh.positions.size()), mesh.triangles), offset);
 	std::vector<Vec3> f;
 	kernel.compute(pressure, mesh.positions, f);
 	return f;
@@ -36,7 +36,7 @@ TEST(PressureForce, fastEqualsReference)
 {
 	for (unsigned seed = 1; seed < 6; ++seed) {
 		const auto mesh = randomClosedMesh(seed);
-		for (const double offset : { 0., 0.002 })
+		for (const double offset : {0., 0.002})
 			EXPECT_LT(relativeDifference(forces(mesh, offset), reference::pressureForces(mesh.triangles, pressure, mesh.positions, offset)), 1e-12);
 	}
 }
@@ -44,20 +44,20 @@ TEST(PressureForce, fastEqualsReference)
 TEST(PressureForce, isMinusPressureTimesVolumeGradient)
 {
 	for (unsigned seed = 1; seed < 4; ++seed) {
-		auto         mesh  = randomClosedMesh(seed);
-		const auto   f     = forces(mesh, 0);
-		const double h     = 1e-5; // the volume is linear in each coordinate: no truncation error, a large step only helps
-		double       worst = 0, size = 0;
+		auto mesh = randomClosedMesh(seed);
+		const auto f = forces(mesh, 0);
+		const double h = 1e-5; // the volume is linear in each coordinate: no truncation error, a large step only helps
+		double worst = 0, size = 0;
 		for (size_t v = 0; v < mesh.positions.size(); v += 7)
 			for (int a = 0; a < 3; ++a) {
-				const double x         = mesh.positions[v][a];
-				mesh.positions[v][a]   = x + h;
-				const double up        = closedVolume(mesh.triangles, mesh.positions);
-				mesh.positions[v][a]   = x - h;
-				const double down      = closedVolume(mesh.triangles, mesh.positions);
-				mesh.positions[v][a]   = x;
-				worst                  = std::max(worst, std::abs(f[v][a] + pressure * (up - down) / (2 * h)));
-				size                   = std::max(size, f[v].norm());
+				const double x = mesh.positions[v][a];
+				mesh.positions[v][a] = x + h;
+				const double up = closedVolume(mesh.triangles, mesh.positions);
+				mesh.positions[v][a] = x - h;
+				const double down = closedVolume(mesh.triangles, mesh.positions);
+				mesh.positions[v][a] = x;
+				worst = std::max(worst, std::abs(f[v][a] + pressure * (up - down) / (2 * h)));
+				size = std::max(size, f[v].norm());
 			}
 		EXPECT_LT(worst, 1e-8 * size) << "rounding of a volume of 1e-5 m3 over a step of 1e-5 m";
 	}
@@ -66,11 +66,11 @@ TEST(PressureForce, isMinusPressureTimesVolumeGradient)
 TEST(PressureForce, closedSurfaceHasNoResultantAndNoMoment)
 {
 	for (unsigned seed = 1; seed < 6; ++seed)
-		for (const double offset : { 0., 0.002 }) {
+		for (const double offset : {0., 0.002}) {
 			const auto mesh = randomClosedMesh(seed);
-			const auto f    = forces(mesh, offset);
-			Vec3       resultant = Vec3::Zero(), moment = Vec3::Zero();
-			double     size = 0;
+			const auto f = forces(mesh, offset);
+			Vec3 resultant = Vec3::Zero(), moment = Vec3::Zero();
+			double size = 0;
 			for (size_t i = 0; i < f.size(); ++i) {
 				resultant += f[i];
 				moment += mesh.positions[i].cross(f[i]);
@@ -85,13 +85,12 @@ TEST(PressureForce, closedSurfaceHasNoResultantAndNoMoment)
 TEST(PressureForce, degenerateTriangleGivesZeroAndNoNan)
 {
 	// three vertices on a line, and all in one point
-	for (const double spread : { 1., 0. }) {
-		std::vector<Vec3> x = { { 0, 0, 0 }, { spread, 0, 0 }, { 2 * spread, 0, 0 } }, f;
-		for (const double offset : { 0., 0.1 }) {
-			PressureForce kernel(TriangleMesh(3, { { 0, 1, 2 } }), offset);
+	for (const double spread : {1., 0.}) {
+		std::vector<Vec3> x = {{0, 0, 0}, {spread, 0, 0}, {2 * spread, 0, 0}}, f;
+		for (const double offset : {0., 0.1}) {
+			PressureForce kernel(TriangleMesh(3, {{0, 1, 2}}), offset);
 			kernel.compute(pressure, x, f);
-			for (const auto& v : f)
-				EXPECT_EQ(v.norm(), 0);
+			for (const auto& v : f) EXPECT_EQ(v.norm(), 0);
 		}
 	}
 }
@@ -99,16 +98,16 @@ TEST(PressureForce, degenerateTriangleGivesZeroAndNoNan)
 TEST(PressureForce, innerSurfaceTakesTheBiasAway)
 {
 	// a long tube: the force a ring transmits over its inner surface; the polygon's own error is (pi/n)^2/6 and common to both
-	const HexLattice l = makeHexLattice({ 0.020, 0.080, 0.001, Placement::outside, 2, 2 });
-	const int        k = l.rings / 2;
-	for (const bool inner : { true, false }) {
-		const auto   f = forces(l, inner ? l.sphereRadius : 0);
-		double       inward = 0;
+	const HexLattice l = makeHexLattice({0.020, 0.080, 0.001, Placement::outside, 2, 2});
+	const int k = l.rings / 2;
+	for (const bool inner : {true, false}) {
+		const auto f = forces(l, inner ? l.sphereRadius : 0);
+		double inward = 0;
 		for (int i = 0; i < l.perRing; ++i) {
 			const Vec3& x = l.positions[l.at(k, i)];
 			inward -= f[l.at(k, i)].dot(Vec3(x[0], x[1], 0).normalized());
 		}
-		const double onSoil   = inward / (2 * M_PI * l.innerRadius * l.ringSpacing);
+		const double onSoil = inward / (2 * M_PI * l.innerRadius * l.ringSpacing);
 		const double expected = inner ? 1 : l.centreRadius / l.innerRadius;
 		EXPECT_NEAR(onSoil / pressure, expected, 2e-3);
 	}
@@ -116,15 +115,14 @@ TEST(PressureForce, innerSurfaceTakesTheBiasAway)
 
 TEST(PressureForce, areasOfVerticesAddUpToTheSurface)
 {
-	auto          mesh = randomClosedMesh(2);
+	auto mesh = randomClosedMesh(2);
 	PressureForce kernel(TriangleMesh(static_cast<int>(mesh.positions.size()), mesh.triangles), 0);
 	std::vector<Vec3> f;
 	kernel.compute(pressure, mesh.positions, f);
 	std::vector<double> third;
 	kernel.vertexAreas(third);
 	double sum = 0, direct = 0;
-	for (const double a : third)
-		sum += a;
+	for (const double a : third) sum += a;
 	for (const auto& t : mesh.triangles)
 		direct += 0.5 * (mesh.positions[t[1]] - mesh.positions[t[0]]).cross(mesh.positions[t[2]] - mesh.positions[t[0]]).norm();
 	EXPECT_NEAR(sum / direct, 1, 1e-12);
@@ -143,7 +141,7 @@ TEST(PressureForce, threadsDoNotChangeABit)
 
 TEST(PressureForce, badMeshIsNamed)
 {
-	EXPECT_COMPLAINT(TriangleMesh(3, { { 0, 1, 3 } }), "triangles[0] = 3");
-	EXPECT_COMPLAINT(TriangleMesh(3, { { 0, 1, 2 }, { 0, 1, 1 } }), "triangles[1]");
-	EXPECT_COMPLAINT(PressureForce(TriangleMesh(3, { { 0, 1, 2 } }), std::nan("")), "MembranePressure.offset");
+	EXPECT_COMPLAINT(TriangleMesh(3, {{0, 1, 3}}), "triangles[0] = 3");
+	EXPECT_COMPLAINT(TriangleMesh(3, {{0, 1, 2}, {0, 1, 1}}), "triangles[1]");
+	EXPECT_COMPLAINT(PressureForce(TriangleMesh(3, {{0, 1, 2}}), std::nan("")), "MembranePressure.offset");
 }

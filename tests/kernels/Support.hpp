@@ -20,7 +20,7 @@ inline double relativeDifference(const std::vector<Vec3>& a, const std::vector<V
 	double size = 0, difference = 0;
 	for (size_t i = 0; i < a.size(); ++i) {
 		if (!a[i].allFinite() || !b[i].allFinite()) return inf;
-		size       = std::max(size, b[i].norm());
+		size = std::max(size, b[i].norm());
 		difference = std::max(difference, (a[i] - b[i]).norm());
 	}
 	return size > 0 ? difference / size : difference;
@@ -29,10 +29,9 @@ inline double relativeDifference(const std::vector<Vec3>& a, const std::vector<V
 /// Moves every point by a random vector of at most `size` in each component.
 inline void shake(std::vector<Vec3>& points, double size, unsigned seed)
 {
-	std::mt19937_64                        random(seed);
+	std::mt19937_64 random(seed);
 	std::uniform_real_distribution<double> u(-size, size);
-	for (auto& p : points)
-		p += Vec3(u(random), u(random), u(random));
+	for (auto& p : points) p += Vec3(u(random), u(random), u(random));
 }
 
 inline std::vector<Vec3> randomVectors(size_t count, double size, unsigned seed)
@@ -43,27 +42,28 @@ inline std::vector<Vec3> randomVectors(size_t count, double size, unsigned seed)
 }
 
 /// A small membrane of the study's proportions.
-inline HexLattice smallTube() { return makeHexLattice({ 0.020, 0.030, 0.002, Placement::outside, 1, 1 }); }
+inline HexLattice smallTube() { return makeHexLattice({0.020, 0.030, 0.002, Placement::outside, 1, 1}); }
 
 /// Adds the centres of both ends, so that the tube becomes a closed surface.
 inline void closeTube(HexLattice& tube)
 {
-	for (const int k : { 0, tube.rings - 1 }) {
+	for (const int k : {0, tube.rings - 1}) {
 		Vec3 centre = Vec3::Zero();
-		for (int i = 0; i < tube.perRing; ++i)
-			centre += tube.positions[tube.at(k, i)] / tube.perRing;
+		for (int i = 0; i < tube.perRing; ++i) centre += tube.positions[tube.at(k, i)] / tube.perRing;
 		const int cap = static_cast<int>(tube.positions.size());
 		tube.positions.push_back(centre);
 		for (int i = 0; i < tube.perRing; ++i) {
-			if (k == 0) tube.triangles.push_back({ cap, tube.at(k, i + 1), tube.at(k, i) });
+			if (k == 0)
+				tube.triangles.push_back({cap, tube.at(k, i + 1), tube.at(k, i)});
 			else
-				tube.triangles.push_back({ cap, tube.at(k, i), tube.at(k, i + 1) });
+				tube.triangles.push_back({cap, tube.at(k, i), tube.at(k, i + 1)});
 		}
 	}
 }
 
 /// Message of the std::invalid_argument that `call` throws; empty when it throws none.
-template <typename Call> std::string complaint(const Call& call)
+template <typename Call>
+std::string complaint(const Call& call)
 {
 	try {
 		call();

@@ -28,4 +28,7 @@ TEST(Support, nanAndLengthMismatchNeverPass)
 	EXPECT_FALSE(relativeDifference(a, b) < 1e300);
 }
 
-TEST(Support, complaintIsEmptyWithoutException) { EXPECT_EQ(support::complaint([] {}), ""); }
+TEST(Support, complaintIsEmptyWithoutException)
+{
+	EXPECT_EQ(support::complaint([] {}), "");
+}

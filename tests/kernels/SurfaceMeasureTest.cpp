@@ -12,13 +12,12 @@ const double inf = std::numeric_limits<double>::infinity();
 HexLattice prism(int n, double radius, double height)
 {
 	HexLattice p;
-	for (const double z : { 0., height })
-		for (int i = 0; i < n; ++i)
-			p.positions.emplace_back(radius * std::cos(2 * M_PI * i / n), radius * std::sin(2 * M_PI * i / n), z);
+	for (const double z : {0., height})
+		for (int i = 0; i < n; ++i) p.positions.emplace_back(radius * std::cos(2 * M_PI * i / n), radius * std::sin(2 * M_PI * i / n), z);
 	for (int i = 0; i < n; ++i) {
 		const int j = (i + 1) % n;
-		p.triangles.push_back({ i, j, n + i });
-		p.triangles.push_back({ j, n + j, n + i });
+		p.triangles.push_back({i, j, n + i});
+		p.triangles.push_back({j, n + j, n + i});
 	}
 	return p;
 }
@@ -27,10 +26,10 @@ HexLattice prism(int n, double radius, double height)
 
 TEST(SurfaceMeasure, prismByClosedForm)
 {
-	const int    n = 17;
+	const int n = 17;
 	const double r = 0.02, h = 0.08, section = 0.5 * n * r * r * std::sin(2 * M_PI / n), side = 2 * r * std::sin(M_PI / n);
-	const auto   p     = prism(n, r, h);
-	const auto   whole = measureTube(p.triangles, p.positions, -inf, inf);
+	const auto p = prism(n, r, h);
+	const auto whole = measureTube(p.triangles, p.positions, -inf, inf);
 	EXPECT_NEAR(whole.volume / (section * h), 1, 1e-12);
 	EXPECT_NEAR(whole.area / (n * side * h), 1, 1e-12);
 	const auto part = measureTube(p.triangles, p.positions, 0.013, 0.047);
@@ -40,10 +39,9 @@ TEST(SurfaceMeasure, prismByClosedForm)
 
 TEST(SurfaceMeasure, shiftedTubeHasTheSameVolume)
 {
-	auto       p      = prism(17, 0.02, 0.08);
+	auto p = prism(17, 0.02, 0.08);
 	const auto before = measureTube(p.triangles, p.positions, 0.01, 0.07);
-	for (auto& x : p.positions)
-		x += Vec3(0.5, -0.3, 0);
+	for (auto& x : p.positions) x += Vec3(0.5, -0.3, 0);
 	EXPECT_NEAR(measureTube(p.triangles, p.positions, 0.01, 0.07).volume / before.volume, 1, 1e-12);
 }
 
@@ -52,9 +50,8 @@ TEST(SurfaceMeasure, slabsAddUp)
 	HexLattice tube = support::smallTube();
 	support::shake(tube.positions, 5e-4, 4);
 	const double volume = measureTube(tube.triangles, tube.positions, 0.002, 0.028).volume;
-	double       sum    = 0;
-	for (int i = 0; i < 13; ++i)
-		sum += measureTube(tube.triangles, tube.positions, 0.002 + i * 0.002, 0.004 + i * 0.002).volume;
+	double sum = 0;
+	for (int i = 0; i < 13; ++i) sum += measureTube(tube.triangles, tube.positions, 0.002 + i * 0.002, 0.004 + i * 0.002).volume;
 	EXPECT_NEAR(sum / volume, 1, 1e-12);
 }
 

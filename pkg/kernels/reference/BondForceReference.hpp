@@ -20,8 +20,8 @@ inline void bondForces(const std::vector<std::array<int, 2>>& bonds, const BondL
 	p.force.assign(p.position.size(), Vec3::Zero());
 	p.torque.assign(p.position.size(), Vec3::Zero());
 	for (size_t b = 0; b < bonds.size(); ++b) {
-		const int    i = bonds[b][0], j = bonds[b][1];
-		const Vec3   branch   = p.position[j] - p.position[i];
+		const int i = bonds[b][0], j = bonds[b][1];
+		const Vec3 branch = p.position[j] - p.position[i];
 		const double distance = branch.norm();
 		if (distance == 0) continue;
 		const Vec3 n = branch / distance;
@@ -32,17 +32,17 @@ inline void bondForces(const std::vector<std::array<int, 2>>& bonds, const BondL
 
 		Vec3 shear = Vec3::Zero();
 		if (law.ks > 0) {
-			const Vec3   old     = state.shear[b];
-			const Vec3   flat    = old - n * n.dot(old);
-			const Vec3   carried = flat.norm() > 0 ? Vec3(flat.normalized() * old.norm()) : Vec3::Zero();
-			const Vec3   twist   = 0.5 * (p.spin[i] + p.spin[j]);
-			const double turn    = twist.dot(n) * dt;
+			const Vec3 old = state.shear[b];
+			const Vec3 flat = old - n * n.dot(old);
+			const Vec3 carried = flat.norm() > 0 ? Vec3(flat.normalized() * old.norm()) : Vec3::Zero();
+			const Vec3 twist = 0.5 * (p.spin[i] + p.spin[j]);
+			const double turn = twist.dot(n) * dt;
 			// contact point at mid-bond, moving with either body, in the middle of the step
 			const Vec3 half = 0.5 * (branch - 0.5 * dt * (p.velocity[j] - p.velocity[i]));
-			const Vec3 vi   = p.velocity[i] + p.spin[i].cross(half);
-			const Vec3 vj   = p.velocity[j] + p.spin[j].cross(-half);
+			const Vec3 vi = p.velocity[i] + p.spin[i].cross(half);
+			const Vec3 vj = p.velocity[j] + p.spin[j].cross(-half);
 			const Vec3 slide = (vj - vi) - n * n.dot(vj - vi);
-			shear            = Eigen::AngleAxisd(turn, n) * carried + law.ks * slide * dt;
+			shear = Eigen::AngleAxisd(turn, n) * carried + law.ks * slide * dt;
 		}
 
 		bool broken = !state.broken.empty() && state.broken[b];

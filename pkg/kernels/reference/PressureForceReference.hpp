@@ -16,18 +16,16 @@ inline std::vector<Vec3> pressureForces(const std::vector<std::array<int, 3>>& t
 	std::vector<Vec3> normal(x.size(), Vec3::Zero()), surface = x, force(x.size(), Vec3::Zero());
 	for (const auto& t : triangles) {
 		const Vec3 twiceArea = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
-		for (int corner : t)
-			normal[corner] += twiceArea;
+		for (int corner : t) normal[corner] += twiceArea;
 	}
 	for (size_t i = 0; i < x.size(); ++i)
 		if (normal[i].norm() > 0) surface[i] -= offset * normal[i].normalized();
 	for (const auto& t : triangles) {
-		const Vec3   twiceArea = (surface[t[1]] - surface[t[0]]).cross(surface[t[2]] - surface[t[0]]);
-		const double area      = 0.5 * twiceArea.norm();
+		const Vec3 twiceArea = (surface[t[1]] - surface[t[0]]).cross(surface[t[2]] - surface[t[0]]);
+		const double area = 0.5 * twiceArea.norm();
 		if (area == 0) continue;
 		const Vec3 inward = -twiceArea.normalized();
-		for (int corner : t)
-			force[corner] += pressure * area / 3 * inward;
+		for (int corner : t) force[corner] += pressure * area / 3 * inward;
 	}
 	return force;
 }
