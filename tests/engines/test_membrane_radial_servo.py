@@ -63,13 +63,13 @@ def test_closedLoopReachesItsTarget(O):
 	)
 	from yade.wrapper import MembraneRadialServo
 
-	m = makeMembrane(mask=2)
+	m = makeMembrane(mask=3)
 	# one fixed sphere radially inside every particle of group 2
 	for i, g in zip(m.ids, m.groups):
 		if g == 2:
 			x = O.bodies[i].state.pos
 			inward = -yade.Vector3(x[0], x[1], 0).normalized()
-			O.bodies.append(utils.sphere(x + inward * 2 * m.sphereRadius, m.sphereRadius, fixed=True, mask=1))
+			O.bodies.append(utils.sphere(x + inward * 2 * m.sphereRadius, m.sphereRadius, fixed=True))
 	servo = MembraneRadialServo(membrane=m, pressure=P, areaRule="cube", gain=0.1, iterPeriod=20)
 	O.engines = [
 		ForceResetter(),
@@ -78,8 +78,6 @@ def test_closedLoopReachesItsTarget(O):
 		servo,
 		NewtonIntegrator(damping=0.5),
 	]
-	for i in m.ids:
-		O.bodies[i].mask = 3
 	O.dt = 0.2 * math.sqrt(O.bodies[m.ids[200]].state.mass / (1e8 * m.sphereRadius))
 	O.run(3000, True)
 	assert m.transmittedPressure(2) == pytest.approx(P, rel=5e-3)
