@@ -222,29 +222,27 @@ Real HexMembrane::transmittedPressure(int group) const
 {
 	if (group != 0 && group != 2 && group != 3)
 		hexmembrane::reject("HexMembrane.transmittedPressure: group", group, "no pressure is transmitted there", "0 (groups 2 and 3), 2 or 3");
-	const Scene&     scene = currentScene();
-	vector<Vector3r> x     = positions_get(), unused, normals;
-	vector<Real>     areas;
-
-	hexmembrane::PressureForce mesh(hexmembrane::TriangleMesh(static_cast<int>(x.size()), triangleList()), sphereRadius);
-	mesh.compute(0., x, unused);
-	mesh.vertexNormals(normals);
-	mesh.vertexAreas(areas);
+	const Scene&           scene = currentScene();
+	const vector<Vector3r> x     = positions_get();
 
 	const std::set<Body::id_t> own(ids.begin(), ids.end());
 	Real                       force = 0, area = 0;
-	for (int i = 0; i < static_cast<int>(ids.size()); ++i) {
-		const int g = groupOfRing(i / perRing);
+	for (int k = 0; k < rings; ++k) {
+		const int g = groupOfRing(k);
 		if (g == 1 || (group != 0 && g != group)) continue;
-		area += areas[i];
-		for (const auto& entry : body(scene, i, "HexMembrane.transmittedPressure")->intrs) {
-			const Interaction& contact = *entry.second;
-			if (!contact.isReal() || own.count(entry.first)) continue;
-			const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
-			if (!phys) continue;
-			// YADE's laws apply +normalForce to the second body
-			const Vector3r onOther = contact.getId1() == ids[i] ? phys->normalForce : Vector3r(-phys->normalForce);
-			force -= onOther.dot(normals[i]);
+		const Vector3r centre = hexmembrane::ringShape(stencil(), x, k).centre;
+		area += perRing * hexmembrane::particleArea(stencil(), x, k, sphereRadius, hexmembrane::AreaRule::tributary);
+		for (int i = k * perRing; i < (k + 1) * perRing; ++i) {
+			const Vector3r inward = hexmembrane::towardAxis(x[i], centre);
+			for (const auto& entry : body(scene, i, "HexMembrane.transmittedPressure")->intrs) {
+				const Interaction& contact = *entry.second;
+				if (!contact.isReal() || own.count(entry.first)) continue;
+				const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
+				if (!phys) continue;
+				// YADE's laws apply +normalForce to the second body
+				const Vector3r onOther = contact.getId1() == ids[i] ? phys->normalForce : Vector3r(-phys->normalForce);
+				force += onOther.dot(inward);
+			}
 		}
 	}
 	if (area <= 0)
