@@ -106,7 +106,9 @@ class Consolidation:
 	"""Isotropic consolidation."""
 
 	pressure: float = key(REQUIRED, "confining pressure sigma3, pushes inwards", "Pa", low=0, openLow=True)
-	rampTime: Optional[float] = key(None, "time over which the pressure rises smoothly from 0; none: 2000 time steps", "s", low=0, openLow=True)
+	rampTime: Optional[float] = key(
+		None, "time over which the pressure rises smoothly; none: 30 d sqrt(rho/pressure), d the mean grain diameter", "s", low=0, openLow=True
+	)
 	unbalanced: float = key(1e-3, "limit of the unbalanced force ratio, membrane counted", "", low=0, high=0.1, openLow=True)
 	tolerance: float = key(
 		0.05, "largest relative distance of transmitted pressure and axial stress from the pressure", "", low=0, high=0.5, openLow=True

@@ -47,10 +47,12 @@ def plot(recordsPath, pngPath, title=""):
 	lower.plot(strain, column("sigma3_transmitted_group3", 1e-3), color="#1f4e79", lw=1.4, label="transmitted, group 3")
 	lower.plot(strain, column("sigma3_transmitted_all", 1e-3), color="#b5541c", lw=1.2, ls="--", label="transmitted, all")
 	lower.plot(strain, applied, color="0.25", lw=1.0, label="applied")
-	lower.fill_between(strain, [0.95 * p for p in applied], [1.05 * p for p in applied], color="0.9", zorder=0, label="applied \N{PLUS-MINUS SIGN} 5 %")
+	low, high = [0.95 * p for p in applied], [1.05 * p for p in applied]
+	lower.fill_between(strain, low, high, color="0.94", zorder=0, label="applied \N{PLUS-MINUS SIGN} 5 %")
+	lower.margins(y=0.3)
 	lower.set_ylabel("confining pressure [kPa]")
 	lower.set_xlabel("axial strain [%]")
-	lower.legend(frameon=False, fontsize="small", ncols=2)
+	lower.legend(frameon=False, fontsize="small", ncols=4, loc="upper center", columnspacing=1.2)
 	for axes in (upper, middle, lower):
 		axes.grid(color="0.92")
 		axes.set_axisbelow(True)

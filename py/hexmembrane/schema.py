@@ -182,16 +182,21 @@ def table(cls, path=""):
 		kind, optional = _bare(hints[field.name])
 		kind = {float: "number", int: "whole number", bool: "true/false", str: "text"}.get(kind, "list of numbers")
 		default = "none" if field.default is None else str(field.default).lower() if kind == "true/false" else str(field.default)
+		if isinstance(field.default, float):
+			default = f"{field.default:g}"
 		rows.append((name, kind + (" or none" if optional else ""), spec.unit, default, spec.range(), spec.doc))
 	return rows
 
 
 def markdown(cls):
-	"""The table of keys for the documentation, one Markdown table for each section."""
+	"""The tables of keys for the documentation, one Markdown table for the top level and one for each section."""
+	inner = {field.name for field in sections(cls)}
+	parts = [("top level", [row for row in table(cls) if row[0].split(".")[0] not in inner])]
+	parts += [(f"`{field.name}`: {field.metadata['doc']}", table(field.metadata["section"])) for field in sections(cls)]
 	lines = []
-	for field in sections(cls):
-		lines += [f"### `{field.name}`: {field.metadata['doc']}", "", "| key | unit | default | range | purpose |", "| --- | --- | --- | --- | --- |"]
-		for name, kind, unit, default, allowed, doc in table(field.metadata["section"]):
+	for title, rows in parts:
+		lines += [f"### {title}", "", "| key | unit | default | range | purpose |", "| --- | --- | --- | --- | --- |"]
+		for name, kind, unit, default, allowed, doc in rows:
 			allowed = ", ".join(part for part in (kind, allowed) if part)
 			lines.append(f"| `{name}` | {unit} | {default} | {allowed} | {doc} |")
 		lines.append("")

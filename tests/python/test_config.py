@@ -19,7 +19,7 @@ GOOD = {
 
 @pytest.fixture
 def folder(tmp_path):
-	(tmp_path / "sand.csv").write_text("diameter,passing\n0.001,0\n0.002,100\n")
+	(tmp_path / "sand.csv").write_text("diameter (m), percent passing\n0.001, 0\n0.002, 100\n")
 	return tmp_path
 
 
@@ -79,7 +79,7 @@ BAD = [
 	("specimen.seed", -1, "out of range", ">= 0"),
 	("specimen.porosity", 1.5, "out of range", "<= 0.6"),
 	("specimen.scale", 5, "number of grains is wished too", "remove one"),
-	("specimen.packing", "packing.csv", "one source", "exactly one"),
+	("specimen.packing", "packing.txt", "one source", "exactly one"),
 	("specimen.gradation", None, "one source", "exactly one"),
 	("specimen.gradation", "nowhere.csv", "no such file", "correct the path"),
 	("specimen.gradation", 7, "is not text", "give text"),

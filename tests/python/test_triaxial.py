@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A whole small test from its configuration, as a user runs it: killed half-way and resumed, and every way to ask wrongly."""
+
+import copy
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import time
+
+import numpy
+import pytest
+import yaml
+from hexmembrane import records, vtk
+from hexmembrane.run import main
+from PIL import Image
+
+ROOT = pathlib.Path(__file__).parents[2]
+MAIN = ROOT / "py" / "hexmembrane" / "__main__.py"
+TINY = {
+	"title": "tiny",
+	"specimen": {"radius": 0.02, "height": 0.05, "gradation": "sand.csv", "grains": 200, "porosity": 0.45, "emod": 3e7, "seed": 3},
+	"membrane": {"sizeRatio": 1.0},
+	"consolidation": {"pressure": 1e5, "unbalanced": 5e-3, "tolerance": 0.1},
+	"shear": {"strain": 0.02, "velocity": 0.08},
+	"output": {"records": 12, "vtkEvery": 6, "checkpointEvery": 4, "consolidationSteps": 400},
+}
+GRADATION = "diameter (mm), percent passing\n4, 0\n5, 60\n6, 100\n"
+
+
+def command(*arguments):
+	program = os.environ.get("YADE_EXECUTABLE") or shutil.which("yade-double")
+	return [program, "-n", "-x", "-j", "1", str(MAIN), *map(str, arguments)]
+
+
+def environment():
+	return {**os.environ, "PYTHONPATH": str(ROOT / "py"), "OMP_NUM_THREADS": "1"}
+
+
+def runOutside(*arguments):
+	"""A test in a YADE of its own, on one thread."""
+	return subprocess.run(command(*arguments), env=environment(), capture_output=True, text=True, timeout=300)
+
+
+@pytest.fixture
+def runHere(O, capsys):
+	"""The same command line in this YADE: (exit code, stdout, stderr)."""
+
+	def run(*arguments):
+		O.reset()
+		code = main([str(argument) for argument in arguments])
+		said = capsys.readouterr()
+		return code, said.out, said.err
+
+	return run
+
+
+def configure(folder, **changes):
+	"""tiny.yaml in ``folder``, with changes such as ``shear={'strain': 1}``."""
+	(folder / "sand.csv").write_text(GRADATION)
+	given = copy.deepcopy(TINY)
+	for name, part in changes.items():
+		given.setdefault(name, {}).update(part)
+	(folder / "tiny.yaml").write_text(yaml.safe_dump(given))
+	return folder / "tiny.yaml"
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+	"""A test that ran through in one go: (folder, what it printed)."""
+	folder = tmp_path_factory.mktemp("whole")
+	said = runOutside(configure(folder), "--out", folder / "out")
+	assert said.returncode == 0, said.stdout + said.stderr
+	return folder / "out", said.stdout + said.stderr
+
+
+def rowsWithoutClock(path):
+	table = records.read(path)
+	del table["elapsed"]
+	return table
+
+
+def test_records(whole):
+	out, _ = whole
+	table = records.read(out / "records.csv")
+	shear = numpy.array([stage == "shear" for stage in table["stage"]])
+	strain = table["axial_strain"][shear]
+	assert abs(strain - numpy.linspace(0, 0.02, 13)).max() < 1e-4
+	assert (numpy.diff(table["step"]) >= 0).all() and (numpy.diff(table["elapsed"]) >= 0).all()
+	assert (table["sigma3_applied"][shear] == 1e5).all()
+	assert abs(table["q"][shear][0]) < 1e4 and table["q"][shear][-1] > 3e4
+	assert abs(table["sigma3_transmitted_group3"][shear] / 1e5 - 1).max() < 0.1
+	assert (table["bonds_broken"] == 0).all()
+	# Both volumetric strains agree, and both are small in a small test.
+	difference = table["volumetric_strain_radius"][shear] - table["volumetric_strain_volume"][shear]
+	assert abs(difference).max() < 2e-3 and abs(table["volumetric_strain_volume"][shear]).max() < 0.02
+	# 1 - n is the solid volume over V.
+	solid = (1 - table["porosity"]) * table["volume"]
+	assert abs(solid / solid[0] - 1).max() < 1e-12
+
+
+def test_output(whole):
+	out, said = whole
+	assert {"config.yaml", "records.csv", "test.png", "consolidated.yade.gz", "sheared.yade.gz", "vtk"} <= {p.name for p in out.iterdir()}
+	assert not list(out.rglob("*.part")) and not list(out.glob("part-*"))
+	made = yaml.safe_load((out / "config.yaml").read_text())["made"]
+	assert made["threads"] == 1 and made["yade"] and made["hexmembrane"]
+	assert min(Image.open(out / "test.png").size) > 800
+	for word in ("inertial number", "time step", "kn/(p d)", "consolidated after", "sheared to", "left"):
+		assert word in said, word
+	assert "\r" not in said
+
+
+def test_vtkFrames(whole):
+	out, _ = whole
+	frames = sorted((out / "vtk").glob("grains-*.vtp"))
+	assert len(frames) == 3
+	points, _, data, _ = vtk.read(frames[-1])
+	assert len(points) == 200 and data["radius"].min() > 0 and data["coordination"].max() > 3
+	assert abs(data["displacement"]).max() > 1e-4
+	x, triangles, data, cells = vtk.read(out / "vtk" / "membrane-0002.vtp")
+	assert set(data["group"]) == {1, 2, 3} and set(cells["group"]) == {1, 2, 3} and triangles.max() == len(x) - 1
+	assert set(data["pressure"]) == {0.0, 1e5}
+	# No grain is outside the membrane.
+	assert numpy.hypot(*points[:, :2].T).max() < numpy.hypot(*x[:, :2].T).max()
+
+
+def test_killedAndResumed(whole, tmp_path):
+	"""Killed in shear past a checkpoint and resumed, a test on one thread has the very rows of one that was never stopped."""
+	out = tmp_path / "out"
+	with subprocess.Popen(command(configure(tmp_path), "--out", out), env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as test:
+		deadline = time.monotonic() + 120
+		while time.monotonic() < deadline and test.poll() is None:
+			if (out / "records.csv").is_file() and (out / "records.csv").read_text().count("shear,") >= 7:
+				break
+			time.sleep(0.02)
+		assert test.poll() is None, "it ended before it was killed"
+		test.send_signal(signal.SIGKILL)
+	before = records.read(out / "records.csv")["stage"].count("shear")
+	assert 6 <= before < 13
+	said = runOutside(tmp_path / "tiny.yaml", "--out", out, "--resume")
+	assert said.returncode == 0, said.stdout + said.stderr
+	assert "resumed in shear after 4 rows" in said.stdout or "resumed in shear after 8 rows" in said.stdout
+	expected, found = rowsWithoutClock(whole[0] / "records.csv"), rowsWithoutClock(out / "records.csv")
+	for name, values in expected.items():
+		assert list(found[name]) == list(values), name
+	assert (out / "vtk" / "grains.pvd").read_text() == (whole[0] / "vtk" / "grains.pvd").read_text()
+
+
+def test_shearFromConsolidatedState(whole, tmp_path, runHere):
+	"""A consolidated state is a file that can be sheared again, elsewhere, to the same curve (to rounding, on any number of threads)."""
+	path = configure(tmp_path, shear={"strain": 0.005}, output={"records": 3})
+	code, _, errors = runHere(path, "--out", tmp_path / "out", "--from", whole[0] / "consolidated.yade.gz")
+	assert code == 0, errors
+	table, reference = records.read(tmp_path / "out" / "records.csv"), records.read(whole[0] / "records.csv")
+	assert set(table["stage"]) == {"shear"} and len(table["step"]) == 4
+	start = reference["stage"].index("shear")
+	for name in ("q", "volume", "porosity"):
+		assert table[name][-1] == pytest.approx(reference[name][start + 3], rel=1e-6, abs=1.0 if name == "q" else 0), name
+
+
+def test_stateOfAnotherPressure(whole, tmp_path, runHere):
+	path = configure(tmp_path, consolidation={"pressure": 5e4})
+	code, _, errors = runHere(path, "--out", tmp_path / "out", "--from", whole[0] / "consolidated.yade.gz")
+	assert code == 2 and "consolidation.pressure = 50000.0: the state was consolidated at 100000.0 Pa; fix: " in errors
+
+
+def test_packingIsAFile(whole, tmp_path, runHere):
+	"""The specimen made by one test is the input of another, which must be of the same size."""
+	packing = str(whole[0] / "packing.txt")
+	path = configure(tmp_path, specimen={"gradation": None, "grains": None, "packing": packing})
+	code, said, errors = runHere(path, "--out", tmp_path / "out", "--until", "membrane")
+	assert code == 0, errors
+	assert "200 grains from" in said and (tmp_path / "out" / "generated.yade.gz").is_file()
+	path = configure(tmp_path, specimen={"gradation": None, "grains": None, "packing": packing, "height": 0.06})
+	code, _, errors = runHere(path, "--out", tmp_path / "other")
+	assert code == 2 and "has height 0.05 m, this specimen needs 0.06 m; fix: " in errors
+
+
+def test_specimenAlone(whole, tmp_path, runHere):
+	code, _, errors = runHere(configure(tmp_path), "--out", tmp_path / "out", "--until", "specimen")
+	assert code == 0, errors
+	assert (tmp_path / "out" / "packing.txt").read_bytes() == (whole[0] / "packing.txt").read_bytes()
+
+
+def test_notAtRest(tmp_path, runHere):
+	"""Consolidation that cannot get there stops with the reason and a checkpoint, and can be resumed with more steps."""
+	strict = {"unbalanced": 1e-12, "maxSteps": 400}
+	code, _, errors = runHere(configure(tmp_path, consolidation=strict), "--out", tmp_path / "out")
+	assert code == 1
+	assert "consolidation.maxSteps = 400: not at rest after 400 steps" in errors and "; fix: " in errors
+	assert (tmp_path / "out" / "checkpoint.json").is_file()
+	path = configure(tmp_path, consolidation={**strict, "maxSteps": 600})
+	code, said, errors = runHere(path, "--out", tmp_path / "out", "--resume")
+	assert code == 1 and "not at rest after 600 steps" in errors and "resumed in consolidation" in said
+
+
+BAD = [
+	({}, ["nowhere.yaml"], 2, "cannot be read"),
+	({"specimen": {"radius": -1}}, [], 2, "specimen.radius = -1: is out of range"),
+	({"specimen": {"raduis": 1}}, [], 2, "did you mean 'radius'"),
+	({"specimen": {"gradation": "gone.csv"}}, [], 2, "no such file"),
+	({"specimen": {"gradation": "tiny.yaml"}}, [], 2, "is no gradation"),
+	({"specimen": {"gradation": None, "grains": None, "packing": "sand.csv"}}, [], 2, "is no packing"),
+	({"specimen": {"porosity": 0.36}}, [], 1, "CylinderPacking.porosity = 0.36"),
+	({"membrane": {"sizeRatio": None}}, [], 2, "membrane.sizeRatio = None: has no value"),
+	({"membrane": {"particleRadius": 0.03, "platenRows": 0}}, [], 1, "HexMembrane.particleRadius = "),
+	({"membrane": {"oRingRows": 2, "platenRows": 7}}, [], 1, "HexMembrane.platenRows = "),
+	({"numerics": {"dt": 1.0}}, [], 1, "numerics.dt = 1 s: is above the critical time step"),
+	({}, ["--resume"], 2, "there is none"),
+	({}, ["--from", "gone.yade.gz"], 1, "no such file"),
+	({}, ["--resume", "--from", "gone.yade.gz"], 2, "leave out one"),
+]
+
+
+@pytest.mark.parametrize("changes, arguments, code, message", BAD, ids=[row[3] for row in BAD])
+def test_badInput(tmp_path, runHere, changes, arguments, code, message):
+	"""Exit code, the message with a fix and no traceback; no records are begun."""
+	path = configure(tmp_path, **changes)
+	if arguments[:1] == ["nowhere.yaml"]:
+		path, arguments = tmp_path / "nowhere.yaml", []
+	found, _, errors = runHere(path, "--out", tmp_path / "out", *arguments)
+	assert found == code, errors
+	assert message in errors and "fix: " in errors and "Traceback" not in errors
+	assert not (tmp_path / "out" / "records.csv").exists()
+
+
+def test_damagedState(tmp_path, runHere):
+	(tmp_path / "bad.yade.gz").write_bytes(b"no state of YADE")
+	code, _, errors = runHere(configure(tmp_path), "--out", tmp_path / "out", "--from", tmp_path / "bad.yade.gz")
+	assert code == 1 and "YADE cannot read it" in errors and "fix: " in errors
+
+
+def test_folderInUse(whole, runHere):
+	"""A test is never written over; another configuration is never resumed into it."""
+	out = whole[0]
+	before = (out / "records.csv").read_bytes()
+	code, _, errors = runHere(out.parent / "tiny.yaml", "--out", out)
+	assert code == 2 and "holds a test already" in errors
+	given = yaml.safe_load((out.parent / "tiny.yaml").read_text())
+	given["shear"]["velocity"] = 0.5
+	(out.parent / "other.yaml").write_text(yaml.safe_dump(given))
+	code, _, errors = runHere(out.parent / "other.yaml", "--out", out, "--resume")
+	assert code == 2 and "other values of shear.velocity" in errors
+	assert (out / "records.csv").read_bytes() == before
+
+
+def test_finishedTestIsLeftAsItIs(whole, runHere):
+	"""Resuming a test that has ended adds nothing."""
+	out = whole[0]
+	before = rowsWithoutClock(out / "records.csv")
+	code, _, errors = runHere(out.parent / "tiny.yaml", "--out", out, "--resume", "--quiet")
+	assert (code, errors) == (0, "")
+	after = rowsWithoutClock(out / "records.csv")
+	assert all(list(before[name]) == list(after[name]) for name in before)
+
+
+def test_grainOutsideIsSeen(whole, O):
+	"""A grain put outside the membrane, or behind a platen, is named."""
+	from hexmembrane import measure, scene, stages
+
+	stages.load(whole[0] / "sheared.yade.gz")
+	handles = scene.Scene()
+	grains = measure.Grains.of(handles.grainIds())
+	assert measure.escaped(handles, grains) is None
+	lost = grains.ids[7]
+	for place in ((0.03, 0, 0.025), (0, 0, 0.06), (0, 0, -0.01)):
+		O.bodies[lost].state.pos = place
+		assert measure.escaped(handles, grains) == lost
+
+
+def test_emptySceneIsWanted(O):
+	"""The builder does not wipe a scene that somebody else made."""
+	from hexmembrane import scene
+	from yade import utils
+
+	O.bodies.append(utils.sphere((0, 0, 0), 1))
+	with pytest.raises(RuntimeError, match="an empty scene is needed; fix: "):
+		scene.build(None, None)
+	assert len(O.bodies) == 1
+
+
+def test_sceneOfAnotherKind(O):
+	from hexmembrane import scene
+
+	with pytest.raises(RuntimeError, match="MembraneBonds: 1 expected"):
+		scene.Scene()
