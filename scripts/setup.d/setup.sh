@@ -1,0 +1,96 @@
+# shellcheck shell=bash
+# prepare: does whatever set-up is still missing and builds the plugin. Afterwards the array `entry` holds the words before a
+# command that is to run beside YADE, and `build` is up to date.
+set -euo pipefail
+# shellcheck source=/dev/null
+for _part in common apt root native; do . "$(dirname "${BASH_SOURCE[0]}")/$_part.sh"; done
+
+# Where YADE comes from: sets host (native or root), yadeSource and entry.
+chooseHost() {
+	local wanted=${HEXMEMBRANE_HOST:-auto} installed
+	[[ $wanted =~ ^(auto|native|root)$ ]] || die "HEXMEMBRANE_HOST = $wanted: must be native, root or auto."
+	host=root
+	if [[ $wanted != root ]] && isDebian13; then
+		if ((EUID == 0)) || [[ -z $(missingPackages) ]]; then host=native; fi
+	fi
+	[[ $wanted != native || $host == native ]] ||
+		die "HEXMEMBRANE_HOST = native: this is no Debian 13 with all of: $(listOf packages | tr '\n' ' ')" "fix: install them, or unset HEXMEMBRANE_HOST"
+	if [[ $host == native ]]; then
+		installPackages
+		installed=$(dpkg-query -W -f '${Version}' yade)
+		[[ $installed == "$yadeVersion"-* ]] || die "the installed yade is version $installed; hexmembrane supports Debian 13's $yadeVersion." \
+			"fix: apt-get install yade=$yadeVersion-1+b1, or HEXMEMBRANE_HOST=root for a private root"
+		yadeSource=$cache/yade-$yadeVersion
+		[[ -d $yadeSource ]] || setUpNativeSource "$yadeSource"
+		hostId="native $installed"
+		entry=(env)
+	else
+		local root
+		root=$cache/root-$(rootHash)
+		local place
+		for place in "$checkout" "$PWD" "$cache"; do
+			case $place/ in
+			/usr/* | /etc/* | /bin/* | /lib*/* | /sbin/* | /boot/*) die "$place cannot be seen from the private root, whose own /usr and /etc lie there." "fix: use a folder elsewhere" ;;
+			esac
+		done
+		[[ -d $root ]] || setUpRoot "$root"
+		unset APT_CONFIG
+		yadeSource=/usr/src/yade
+		hostId="root ${root##*-}"
+		enterRoot "$root"
+	fi
+	entry+=(HEXMEMBRANE_BUILD="$buildDir")
+}
+
+# The plugin, the kernels' tests and benchmarks, in build/. ninja itself finds out what is out of date.
+buildPlugin() {
+	local stamp=$buildDir/.host jobs memoryGb log
+	lock 8 "build-$(printf '%s' "$checkout" | sha256sum | cut -c 1-12)"
+	if [[ -e $buildDir && ! -e $stamp ]]; then
+		[[ ! -e $buildDir/CMakeCache.txt ]] || die "$buildDir was configured by hand; scripts/ would overwrite it." \
+			"fix: remove it, or use another folder for builds of your own: cmake -B build-own ..."
+	fi
+	mkdir -p "$buildDir" || die "$checkout is not writable: there is no place for the build."
+	log=$buildDir/configure.log
+	if [[ ! -f $buildDir/build.ninja || $(cat "$stamp" 2>/dev/null) != "$hostId" ]]; then
+		say "configuring the build ($hostId)"
+		find "$buildDir" -mindepth 1 -delete
+		"${entry[@]}" cmake -S "$checkout" -B "$buildDir" -G Ninja -DCMAKE_BUILD_TYPE=Release -DYADE_EXECUTABLE=/usr/bin/yade-double \
+			-DYADE_SOURCE_DIR="$yadeSource" >"$log" 2>&1 || {
+			cat "$log" >&2
+			die "cmake failed (see above)."
+		}
+		echo "$hostId" >"$stamp"
+	fi
+	# A file that includes YADE takes up to 2.6 GB to compile.
+	memoryGb=$(awk '/^MemTotal:/ { print int($2 / 2.6e6) }' /proc/meminfo)
+	jobs=$(processors)
+	((memoryGb >= jobs)) || jobs=$((memoryGb > 0 ? memoryGb : 1))
+	"${entry[@]}" ninja -C "$buildDir" -j "$jobs" | tellBuild || die "the build failed (see above)."
+	exec 8>&-
+}
+
+# ninja's lines, once there is something to build.
+tellBuild() {
+	local line building=0
+	while IFS= read -r line; do
+		case $line in
+		"ninja: Entering"* | "[0/"* | "ninja: no work"*) continue ;;
+		esac
+		((building)) || say "building the plugin (the first time takes some minutes)"
+		building=1
+		printf '%s\n' "$line" >&2
+	done
+}
+
+prepare() {
+	chooseHost
+	buildPlugin
+}
+
+# runBeside COMMAND...: replaces this script by COMMAND beside YADE. An interrupt from the terminal reaches the command alone: in
+# between, bubblewrap would end at once and take the command with it before it can close its files.
+runBeside() {
+	trap '' INT
+	exec "${entry[@]}" env --default-signal=INT PYTHONPATH="$checkout/py" "$@"
+}
