@@ -18,8 +18,8 @@ namespace {
 
 using Outcome = SphereRelaxation::Outcome;
 
-/// Solid fractions: where growth starts, by how much it goes on, and up to where loose packings are grown before they are shrunk again.
-constexpr double firstFraction = 0.50, growth = 0.01, evenFraction = 0.58;
+/// Solid fractions: where growth starts, by how much it goes on, and the largest up to which loose packings may be spread (denser ones jam).
+constexpr double firstFraction = 0.50, growth = 0.01, largestEven = 0.6;
 /// Share by which a jammed packing is shrunk before it is shaken, and the half width of the random steps over the mean radius.
 constexpr double loosening = 0.02, shakeAmplitude = 0.5;
 /// A jammed packing whose mean overlap exceeds this share of the mean diameter is beyond what shaking can gain.
@@ -55,6 +55,8 @@ void checkSpec(const SpherePackingSpec& s)
 		reject("CylinderPacking.porosity", s.porosity, "outside 0 .. 1", "e.g. 0.40, or nan to keep the radii");
 	requirePositive("CylinderPacking.tolerance", s.tolerance, "1 (share of the mean radius)");
 	if (s.tolerance > 0.01) reject("CylinderPacking.tolerance", s.tolerance, "too coarse for a packing without overlaps", "at most 0.01, 1e-4 by default");
+	requireNonNegative("CylinderPacking.even", s.even, "1 (solid fraction)");
+	if (s.even > largestEven) reject("CylinderPacking.even", s.even, "as dense as spheres jam", "at most " + formatNumber(largestEven));
 	if (s.shakes < 0) reject("CylinderPacking.shakes", s.shakes, "a number of trials cannot be negative", "0 or more");
 }
 
@@ -111,11 +113,11 @@ public:
 		return separate(1);
 	}
 
-	/// Past the wanted size, as far as it goes up to `evenFraction`; the last good state is kept.
-	void spread()
+	/// Past the wanted size, as far as it goes up to the solid fraction `even`; the last good state is kept.
+	void spread(double even)
 	{
 		kept = spheres.centres();
-		for (double f = fraction + growth; f < evenFraction; f += growth) {
+		for (double f = fraction + growth; f < even; f += growth) {
 			if (!separate(factorFor(f))) return;
 			kept = spheres.centres();
 		}
@@ -209,7 +211,7 @@ SpherePacking packSpheres(const SpherePackingSpec& spec)
 		grower.loosenAndShake();
 		++out.shakesUsed;
 	}
-	grower.spread();
+	grower.spread(spec.even);
 	out.centres = grower.result();
 	out.steps = grower.steps();
 	out.maxOverlap = largestOverlap(out.centres, out.radii, spec.radius, spec.height) / grower.mean();

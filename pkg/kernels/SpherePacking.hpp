@@ -18,6 +18,7 @@ struct SpherePackingSpec {
 	std::uint64_t seed = 1;
 	double tolerance = 1e-4; ///< room left round the spheres over the mean radius, in (0, 0.01]; see packSpheres
 	int shakes = 8;          ///< times that a jammed packing is loosened, shaken and grown again before it is given up, >= 0
+	double even = 0.58;      ///< solid fraction up to which a looser packing is spread, in [0, 0.6]; 0: not at all
 };
 
 /// Spheres inside a vertical cylinder whose axis is z and whose lower end lies on z = 0; sphere i has the i-th of the given radii.
@@ -34,7 +35,7 @@ struct SpherePacking {
 /// Dense random packing without overlaps, statistically isotropic and homogeneous, without gravity; reproducible from the seed.
 ///
 /// Centres are drawn uniformly in the cylinder; spheres of reduced size are pushed apart as frictionless soft spheres (SphereRelaxation) and grown in
-/// steps. Sizes are drawn to places at random, so they do not segregate. Loose packings are grown to a solid fraction of 0.58 all the same and shrunk to
+/// steps. Sizes are drawn to places at random, so they do not segregate. Loose packings are grown to the solid fraction `even` all the same and shrunk to
 /// their size afterwards: grains keep clear of each other and the packing is as even as a dense one. Dense ones are relaxed at radii larger by the
 /// factor 1 + tolerance until those overlap by less than tolerance times the smallest radius, so that none overlap at their own size.
 ///

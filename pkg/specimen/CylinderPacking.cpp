@@ -2,7 +2,7 @@
 #include "CylinderPacking.hpp"
 
 #include "kernels/Check.hpp"
-#include "kernels/SpherePacking.hpp"
+#include "kernels/StressedPacking.hpp"
 
 #include <stdexcept>
 
@@ -14,12 +14,22 @@ const CylinderPacking& CylinderPacking::generated() const
 	return *this;
 }
 
+const CylinderPacking& CylinderPacking::stressed() const
+{
+	if (!generated().packedStressed)
+		throw std::runtime_error("CylinderPacking: the packing was made without stress; fix: set stress, young and friction, then generate()");
+	return *this;
+}
+
 void CylinderPacking::generate()
 {
 	for (int axis = 0; axis < 3; ++axis) hexmembrane::requireFinite("CylinderPacking.origin", static_cast<double>(origin[axis]), "m");
 	if (seed < 0) hexmembrane::reject("CylinderPacking.seed", static_cast<double>(seed), "must not be negative", "0 or more");
 
-	hexmembrane::SpherePackingSpec spec;
+	if (stress != 0) hexmembrane::requirePositive("CylinderPacking.stress", static_cast<double>(stress), "Pa (0: no stress)");
+
+	hexmembrane::StressedPackingSpec under;
+	hexmembrane::SpherePackingSpec& spec = under.packing;
 	spec.radius = static_cast<double>(radius);
 	spec.height = static_cast<double>(height);
 	spec.radii.assign(radii.begin(), radii.end());
@@ -27,8 +37,15 @@ void CylinderPacking::generate()
 	spec.seed = static_cast<std::uint64_t>(seed);
 	spec.tolerance = static_cast<double>(tolerance);
 	spec.shakes = shakes;
+	under.stress = static_cast<double>(stress);
+	under.law = {static_cast<double>(young), static_cast<double>(stiffnessRatio), static_cast<double>(friction), 0.5};
+	under.porosityTolerance = static_cast<double>(porosityTolerance);
 
-	const hexmembrane::SpherePacking made = hexmembrane::packSpheres(spec);
+	hexmembrane::StressedPacking made;
+	if (stress > 0)
+		made = hexmembrane::packUnderStress(under);
+	else
+		static_cast<hexmembrane::SpherePacking&>(made) = hexmembrane::packSpheres(spec);
 	packedCentres.clear();
 	packedCentres.reserve(made.centres.size());
 	for (const auto& c : made.centres) packedCentres.push_back(origin + Vector3r(c[0], c[1], c[2]));
@@ -37,6 +54,12 @@ void CylinderPacking::generate()
 	packedOverlap = made.maxOverlap;
 	packedScale = made.scale;
 	packedShakes = made.shakesUsed;
+	packedStressed = stress > 0;
+	packedRadial = made.radialStress;
+	packedAxial = made.axialStress;
+	packedCoordination = made.coordination;
+	packedRattlers = made.rattlers;
+	packedFriction = made.frictionReached;
 }
 
 YADE_PLUGIN((CylinderPacking));

@@ -91,6 +91,7 @@ class Packing:
             made.seed,
             gradation,
             extra,
+            made.maxOverlap + _ROUNDING,
         )
 
     @property

@@ -92,6 +92,74 @@ def test_badInput(change, message):
         made(**change)
 
 
+@pytest.fixture(scope="module")
+def stressed():
+    return made(porosity=0.44, stress=2e4, young=1e7, friction=0.4)
+
+
+def test_stressAndPorosityAsAsked(stressed):
+    assert (2 * stressed.radialStress + stressed.axialStress) / 3 == pytest.approx(2e4, rel=0.03)
+    assert stressed.radialStress == pytest.approx(stressed.axialStress, rel=0.2)  # 300 grains
+    assert stressed.porosityReached == pytest.approx(0.44, abs=1e-3)
+    solid = 4 / 3 * math.pi * sum(r**3 for r in stressed.sizes)
+    assert 1 - solid / (math.pi * RADIUS**2 * HEIGHT) == pytest.approx(stressed.porosityReached, abs=1e-12)
+    assert stressed.coordination > 3 and stressed.rattlers < 0.3 and 0 < stressed.frictionReached < 0.4 and 0 < stressed.maxOverlap < 0.05
+
+
+def test_yadeFindsTheSameStress(O, stressed):
+    """Love-Weber over YADE's own contacts at the first step: walls apart, the grains' share of the stress of the packing."""
+    O.materials.append(yade.FrictMat(young=1e7, poisson=1 / 3, frictionAngle=math.atan(0.4), density=2650, label="grain"))
+    O.bodies.append([utils.sphere(c, r, material="grain") for c, r in zip(stressed.centres, stressed.sizes)])
+    O.engines = [
+        yade.ForceResetter(),
+        yade.InsertionSortCollider([yade.Bo1_Sphere_Aabb()]),
+        yade.InteractionLoop([yade.Ig2_Sphere_Sphere_ScGeom()], [yade.Ip2_FrictMat_FrictMat_FrictPhys()], [yade.Law2_ScGeom_FrictPhys_CundallStrack()]),
+        yade.NewtonIntegrator(),
+    ]
+    O.dt = 1e-12
+    O.step()
+    total, pressed = 0.0, 0.0
+    for i in O.interactions:
+        if i.isReal:
+            a, b = O.bodies[i.id1], O.bodies[i.id2]
+            total += i.phys.normalForce.norm() * (a.state.pos - b.state.pos).norm()
+    # grain to wall: force times radius, from the same spring
+    for c, r in zip(stressed.centres, stressed.sizes):
+        x = c - ORIGIN
+        for overlap in (r - x[2], x[2] + r - HEIGHT, math.hypot(x[0], x[1]) + r - RADIUS):
+            pressed += 1e7 * r * max(overlap, 0) * r
+    mean = (total + pressed) / (3 * math.pi * RADIUS**2 * HEIGHT)
+    assert mean == pytest.approx((2 * stressed.radialStress + stressed.axialStress) / 3, rel=0.02)
+
+
+def test_resultsOfStressOnlyWithStress(packing):
+    for name in ("radialStress", "axialStress", "coordination", "rattlers", "frictionReached"):
+        with pytest.raises(RuntimeError, match="without stress"):
+            getattr(packing, name)
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        ({"stress": -1.0}, "CylinderPacking.stress = -1"),
+        ({"stress": float("nan")}, "CylinderPacking.stress = nan"),
+        ({"young": float("nan")}, "CylinderPacking.young = nan: not given"),
+        ({"friction": float("nan")}, "CylinderPacking.friction = nan: not given"),
+        ({"stiffnessRatio": 0.0}, "CylinderPacking.stiffnessRatio = 0"),
+        ({"porosityTolerance": 0.0}, "CylinderPacking.porosityTolerance = 0"),
+        ({"porosity": float("nan")}, "CylinderPacking.porosity = nan"),
+    ],
+)
+def test_badInputUnderStress(change, message):
+    with pytest.raises(ValueError, match=message):
+        made(**{"stress": 2e4, "young": 1e7, "friction": 0.4, **change})
+
+
+def test_porosityOutOfReachUnderStress():
+    with pytest.raises(RuntimeError, match=r"CylinderPacking.porosity = 0.5: looser .* a porosity of at most 0\.4"):
+        made(porosity=0.5, stress=5e4, young=1e7, friction=0.4)
+
+
 def test_bodiesOfThePackingFeelNoForce(O, packing):
     O.materials.append(yade.FrictMat(young=1e8, label="grain"))
     O.bodies.append([utils.sphere(c, r, material="grain") for c, r in zip(packing.centres, packing.sizes)])
@@ -112,3 +180,9 @@ def test_fileOfAPacking(packing, tmp_path):
     assert [tuple(c) for c in again.centres.tolist()] == [tuple(c) for c in packing.centres] and again.radii.tolist() == list(packing.sizes)
     assert (again.seed, again.gradation, again.radius, again.height) == (5, "seven sizes", RADIUS, HEIGHT)
     assert again.porosity == pytest.approx(0.45, abs=1e-12) and again.maxOverlap == pytest.approx(0, abs=1e-10)
+
+
+def test_fileOfAPackingUnderStress(stressed, tmp_path):
+    """Its overlaps are part of it."""
+    packing_file.save(packing_file.Packing.of(stressed), tmp_path / "p.packing")
+    assert packing_file.load(tmp_path / "p.packing").maxOverlap == pytest.approx(stressed.maxOverlap, rel=1e-6)

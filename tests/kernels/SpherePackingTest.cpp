@@ -156,6 +156,22 @@ TEST(SpherePacking, nearContactsPointEverywhere)
 		for (int b = 0; b < 3; ++b) EXPECT_NEAR(fabric(a, b), a == b ? 1. / 3 : 0, 0.02) << a << b;
 }
 
+TEST(SpherePacking, spreadGrainsKeepClear)
+{
+	// smallest gap of any two grains over the mean radius: touching when not spread, a few percent when spread
+	const auto smallestGap = [](double even) {
+		SpherePackingSpec s = spec(300, 0.55);
+		s.even = even;
+		const SpherePacking p = packSpheres(s);
+		double gap = 1;
+		for (int i = 0; i < 300; ++i)
+			for (int j = 0; j < i; ++j) gap = std::min(gap, (p.centres[i] - p.centres[j]).norm() - p.radii[i] - p.radii[j]);
+		return gap / meanOf(p.radii);
+	};
+	EXPECT_LT(smallestGap(0), 0.005);
+	EXPECT_GT(smallestGap(0.58), 0.05);
+}
+
 TEST(SpherePacking, saysWhatCanBeReached)
 {
 	SpherePackingSpec s = spec(300, 0.30);
@@ -199,6 +215,8 @@ TEST(SpherePacking, refusesBadInput)
 	EXPECT_COMPLAINT(with([](auto& s) { s.porosity = -0.1; }), "CylinderPacking.porosity = -0.1");
 	EXPECT_COMPLAINT(with([](auto& s) { s.tolerance = 0; }), "CylinderPacking.tolerance = 0");
 	EXPECT_COMPLAINT(with([](auto& s) { s.tolerance = 0.1; }), "CylinderPacking.tolerance = 0.1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.even = 0.7; }), "CylinderPacking.even = 0.7");
+	EXPECT_COMPLAINT(with([](auto& s) { s.even = -1; }), "CylinderPacking.even = -1");
 	EXPECT_COMPLAINT(with([](auto& s) { s.shakes = -1; }), "CylinderPacking.shakes = -1");
 	EXPECT_COMPLAINT(with([](auto& s) { s.radii = {1.}, s.porosity = 0.2; }), "does not go into the cylinder");
 	EXPECT_COMPLAINT(with([](auto& s) { s.radii.assign(2000, 2e-3), s.porosity = NAN; }), "the porosity that these radii make");
