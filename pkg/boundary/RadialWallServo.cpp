@@ -1,0 +1,125 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "RadialWallServo.hpp"
+
+#include "Platen.hpp"
+
+#include <core/Interaction.hpp>
+#include <core/Scene.hpp>
+#include <kernels/Check.hpp>
+#include <kernels/PlatenServo.hpp>
+#include <pkg/common/NormShearPhys.hpp>
+
+namespace yade {
+
+YADE_PLUGIN((RadialWallServo));
+
+namespace {
+
+//! Shape of a body that must be there and be a ShapeType.
+template <typename ShapeType>
+ShapeType* requireShape(const Scene& scene, Body::id_t id, const string& name, const string& type)
+{
+	if (id < 0) hexmembrane::reject(name, int(id), "no body given", "give the id of a " + type + " body");
+	if (!scene.bodies->exists(id))
+		throw std::runtime_error(name + " = " + std::to_string(id) + ": there is no such body (erased?); fix: give the id of a " + type + " body");
+	auto* shape = dynamic_cast<ShapeType*>((*scene.bodies)[id]->shape.get());
+	if (!shape) hexmembrane::reject(name, int(id), "the body's shape is no " + type, "give the id of a " + type + " body");
+	return shape;
+}
+
+} // namespace
+
+CylinderWall& RadialWallServo::requireWall() const
+{
+	CylinderWall& shape = *requireShape<CylinderWall>(*scene, wall, "RadialWallServo.wall", "CylinderWall");
+	shape.requireComplete();
+	return shape;
+}
+
+void RadialWallServo::requireSettings() const
+{
+	hexmembrane::requirePositive("RadialWallServo.stress", stress, "Pa");
+	hexmembrane::requirePositive("RadialWallServo.maxVelocity", maxVelocity, "m/s");
+	hexmembrane::requireNonNegative("RadialWallServo.damping", damping, "1");
+	hexmembrane::requirePositive("RadialWallServo.tolerance", tolerance, "1");
+	if (!math::isnan(timeLimit)) hexmembrane::requirePositive("RadialWallServo.timeLimit", timeLimit, "s");
+}
+
+Real RadialWallServo::specimenHeight() const
+{
+	if (bottomPlaten < 0 && topPlaten < 0) {
+		hexmembrane::requirePositive("RadialWallServo.height", height, "m (or give bottomPlaten and topPlaten)");
+		return height;
+	}
+	const Platen* below = requireShape<Platen>(*scene, bottomPlaten, "RadialWallServo.bottomPlaten", "Platen");
+	const Platen* above = requireShape<Platen>(*scene, topPlaten, "RadialWallServo.topPlaten", "Platen");
+	const auto& bodies = *scene->bodies;
+	const Real gap = (bodies[topPlaten]->state->pos[2] - 0.5 * above->height) - (bodies[bottomPlaten]->state->pos[2] + 0.5 * below->height);
+	if (!(gap > 0))
+		throw std::runtime_error("RadialWallServo: the platens' faces are " + hexmembrane::formatNumber(gap) + " m apart at iteration " +
+		                         std::to_string(scene->iter) + "; fix: bottomPlaten below topPlaten, and a shorter drive");
+	return gap;
+}
+
+void RadialWallServo::measure(Real& force, Real& sum) const
+{
+	force = sum = 0;
+	for (const auto& entry : (*scene->bodies)[wall]->intrs) {
+		const Interaction& contact = *entry.second;
+		if (!contact.isReal()) continue;
+		const auto* geom = dynamic_cast<const GenericSpheresContact*>(contact.geom.get());
+		const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
+		if (!geom || !phys)
+			throw std::runtime_error("RadialWallServo.wall: contacts of " + contact.phys->getClassName() +
+			                         " do not tell their stiffness; fix: a contact law whose IPhys derives from NormPhys");
+		force += phys->normalForce.dot(geom->normal);
+		sum += phys->kn;
+	}
+}
+
+void RadialWallServo::requireReached(Real target)
+{
+	settled = math::abs(radialStress - stress) <= tolerance * stress;
+	if (target != phaseTarget) {
+		phaseTarget = target;
+		phaseTime = 0;
+		phaseSettled = false;
+	}
+	phaseSettled |= settled;
+	if (!phaseSettled && phaseTime > timeLimit)
+		throw std::runtime_error("RadialWallServo.timeLimit = " + hexmembrane::formatNumber(timeLimit) + ": the wall carries " +
+		                         hexmembrane::formatNumber(radialStress) + " Pa of " + hexmembrane::formatNumber(stress) +
+		                         " Pa after this time, at iteration " + std::to_string(scene->iter) +
+		                         "; fix: is there a specimen inside? give a longer timeLimit, or a larger maxVelocity");
+	phaseTime += scene->dt;
+}
+
+void RadialWallServo::action()
+{
+	CylinderWall& shape = requireWall();
+	requireSettings();
+	const Real area = 2 * Mathr::PI * shape.radius * specimenHeight();
+	Real force;
+	measure(force, stiffness);
+	radialStress = force / area;
+	if (!math::isnan(lastRadius)) {
+		const Real done = 0.5 * (lastForce + force) * (lastRadius - shape.radius);
+		work += done;
+		if (scene->trackEnergy) scene->energy->add(-done, "wallWork", energyIndex, /*reset every step*/ false);
+	}
+	lastForce = force;
+	lastRadius = shape.radius;
+	requireReached(stress);
+
+	const Real dt = scene->dt, target = stress * area;
+	if (stiffness > 0) {
+		const auto servo = hexmembrane::makePlatenServo(stiffness, dt, target, damping, NaN, maxVelocity);
+		velocity = hexmembrane::servoVelocity(servo, velocity, dt, target, force);
+	} else {
+		velocity = maxVelocity;
+	}
+	// the wall moves when the integrator moves the spheres: positions of one instant
+	shape.radius -= velocity * dt;
+}
+
+} // namespace yade

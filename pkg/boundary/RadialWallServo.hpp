@@ -1,0 +1,50 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "CylinderWall.hpp"
+
+#include <core/Body.hpp>
+#include <core/GlobalEngine.hpp>
+
+namespace yade {
+
+/*! Holds the mean radial stress on a CylinderWall by moving its radius. */
+class RadialWallServo : public GlobalEngine {
+public:
+	void action() override;
+
+private:
+	CylinderWall& requireWall() const;
+	Real specimenHeight() const;
+	void requireSettings() const;
+	void measure(Real& force, Real& stiffness) const;
+	void requireReached(Real target);
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS(RadialWallServo,GlobalEngine,"Servo of the study's rigid wall: holds the mean radial stress on a :yref:`CylinderWall` at a target while only the radius moves. Stands after every engine that adds forces and before :yref:`NewtonIntegrator`.\n\nMean radial stress $\\sigma_r=\\sum F_n/(2\\pi R h)$ over the wall's contacts, $h$ the specimen's present height: the distance of the facing sides of two :yref:`Platens<Platen>`, or given.\n\nThe radius is the one degree of freedom of a mass $m$ on a dashpot $c$, pushed inwards by $\\sigma 2\\pi Rh$ and back by the specimen, with the recipe of :yref:`PlatenDrive`: $m=4K\\Delta t^2$, $c=2\\zeta\\sqrt{Km}$ with $K$ the summed stiffness of the wall's contacts, at most 1 % of the target a step. Stable for any stiffness. While nothing touches it the wall closes at :yref:`maxVelocity<RadialWallServo.maxVelocity>`. A wall that has to keep moving carries $4\\zeta K\\Delta t\\,v$ less than the target.\n\nWith :yref:`O.trackEnergy<Omega.trackEnergy>` the work is booked as 'wallWork', negative like YADE's other work from outside. All state is saved.\n\nErrors: a missing or erased wall or platen, a body of another shape, values that are missing or have the wrong sign, contacts that do not tell their stiffness, a target not reached within :yref:`timeLimit<RadialWallServo.timeLimit>`. Example::\n\n\tRadialWallServo(wall=id,stress=100e3,bottomPlaten=low,topPlaten=high,maxVelocity=.02)",
+		((Body::id_t,wall,-1,,"Id of the :yref:`CylinderWall` body, required."))
+		((Real,stress,NaN,,"Mean radial stress to hold [Pa], compression positive, > 0, required; may be changed at any time."))
+		((Body::id_t,bottomPlaten,-1,,"Id of the lower :yref:`Platen`; with topPlaten it gives the specimen's height."))
+		((Body::id_t,topPlaten,-1,,"Id of the upper :yref:`Platen`."))
+		((Real,height,NaN,,"Height of the specimen [m], when no platens are given."))
+		((Real,damping,1,,"Damping ratio $\\zeta$, >= 0; 1 is critical for the contacts alone."))
+		((Real,maxVelocity,NaN,,"Largest velocity of the radius [m/s], and the one of the approach. Required."))
+		((Real,tolerance,0.01,,"Relative error of the stress below which the servo counts as settled."))
+		((Real,timeLimit,NaN,,"Time [s] after the start or a change of the target within which the servo must have settled once, else the run stops with an error; NaN: none."))
+		((Real,velocity,0,Attr::readonly,"Velocity of the radius, positive inwards [m/s]. |yupdate|"))
+		((Real,radialStress,NaN,Attr::readonly,"Mean radial stress at the last step [Pa], compression positive. |yupdate|"))
+		((Real,stiffness,0,Attr::readonly,"Summed normal stiffness of the wall's contacts [N/m]. |yupdate|"))
+		((bool,settled,false,Attr::readonly,"Whether the stress is within the tolerance. |yupdate|"))
+		((Real,work,0,Attr::readonly,"Work done on the specimen [J], trapezoidal. |yupdate|"))
+		((Real,lastForce,0,Attr::hidden,""))
+		((Real,lastRadius,NaN,Attr::hidden,""))
+		((Real,phaseTarget,NaN,Attr::hidden,""))
+		((Real,phaseTime,0,Attr::hidden,""))
+		((bool,phaseSettled,false,Attr::hidden,""))
+		((int,energyIndex,-1,(Attr::hidden|Attr::noSave),""))
+	);
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(RadialWallServo);
+
+} // namespace yade
