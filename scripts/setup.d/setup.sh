@@ -70,16 +70,21 @@ buildPlugin() {
 	exec 8>&-
 }
 
-# ninja's lines, once there is something to build.
+# ninja's lines, once there is something to build. ninja says nothing before the first file is compiled, which may take a minute.
 tellBuild() {
-	local line building=0
-	while IFS= read -r line; do
-		case $line in
-		"ninja: Entering"* | "[0/"* | "ninja: no work"*) continue ;;
-		esac
+	local line building=0 status
+	while :; do
+		status=0
+		IFS= read -r -t 2 line || status=$?
+		((status == 0 || status > 128)) || break
+		if ((status == 0)); then
+			case $line in
+			"ninja: Entering"* | "[0/"* | "ninja: no work"*) continue ;;
+			esac
+		fi
 		((building)) || say "building the plugin (the first time takes some minutes)"
 		building=1
-		printf '%s\n' "$line" >&2
+		((status)) || printf '%s\n' "$line" >&2
 	done
 }
 
