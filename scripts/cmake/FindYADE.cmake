@@ -9,6 +9,8 @@
 # the program itself; the layout of its classes follows from them through the definitions listed here, which are those of
 # YADE's own CMakeLists.txt. A plugin built with others would load and then corrupt memory, so every doubt is an error.
 
+cmake_policy(VERSION 3.22)
+
 set(YADE_EXECUTABLE "" CACHE FILEPATH "YADE's program, e.g. /usr/bin/yade-double")
 set(YADE_SOURCE_DIR "" CACHE PATH "YADE's source tree, of the same version as YADE_EXECUTABLE")
 
