@@ -16,6 +16,26 @@ _MARK = "LayoutProbe"
 _MODULE = "libhexmembrane"
 
 
+def _refuseAnother(folder):
+	"""A build that is asked for must not be replaced unseen by an installed one, which may be older."""
+	loaded = loadedLibrary()
+	if folder and loaded and os.path.realpath(loaded) != os.path.realpath(os.path.join(folder, _MODULE + ".so")):
+		raise ImportError(
+			"YADE has loaded the plugin %s at start, but HEXMEMBRANE_BUILD = %s asks for another. Remove the installed one, or unset "
+			"HEXMEMBRANE_BUILD (run YADE's own program instead of scripts/yade)." % (loaded, folder)
+		)
+
+
+def loadedLibrary():
+	"""Path of the plugin's library in this process, None when it is not loaded."""
+	with open("/proc/self/maps") as maps:
+		for line in maps:
+			path = line.rstrip("\n").partition("/")[2]
+			if os.path.basename(path) == _MODULE + ".so":
+				return "/" + path
+	return None
+
+
 def load():
 	"""Loads the plugin unless it is loaded; raises ImportError saying what to do when that cannot be."""
 	try:
@@ -25,9 +45,10 @@ def load():
 			"hexmembrane works inside YADE, which this Python cannot import (%s). Run the script with scripts/yade SCRIPT "
 			"(or with your own YADE's program)." % error
 		) from error
-	if hasattr(yade.wrapper, _MARK):
-		return
 	folder = os.environ.get("HEXMEMBRANE_BUILD")
+	if hasattr(yade.wrapper, _MARK):
+		_refuseAnother(folder)
+		return
 	if not folder:
 		raise ImportError(
 			"hexmembrane's C++ plugin is not loaded: it is not installed in YADE's library folder, and HEXMEMBRANE_BUILD does not "
