@@ -75,7 +75,9 @@ class Membrane:
 	oRingRows: int = key(2, "rows at each end, beyond the specimen, held by the O-rings (group 1)", "", low=1, high=50)
 	platenRows: int = key(2, "rows beside each platen, pressed radially (group 2)", "", low=0, high=50)
 	young: float = key(1.0e6, "Young's modulus of the membrane's material", "Pa", low=0, openLow=True)
-	thickness: float = key(3e-4, "thickness of the membrane's material; only young * thickness matters", "m", low=0, openLow=True)
+	thickness: float = key(
+		3e-4, "thickness of the material; only young * thickness matters, twice pressure * grain radius or more", "m", low=0, openLow=True
+	)
 	poisson: float = key(1 / 3, "in-plane Poisson's ratio of the lattice; 1/3 has central forces only", "", low=0, high=0.33333334)
 	density: float = key(1000.0, "density of the membrane's spheres", "kg/m3", low=0, openLow=True)
 	tensionOnly: bool = key(False, "bonds carry tension only: the sheet wrinkles instead of carrying compression")
@@ -109,6 +111,9 @@ class Consolidation:
 	rampTime: Optional[float] = key(
 		None, "time over which the pressure rises smoothly; none: 30 d sqrt(rho/pressure), d the mean grain diameter", "s", low=0, openLow=True
 	)
+	friction: Optional[float] = key(
+		None, "coefficient of friction between grains until the end of consolidation; none: specimen.friction; lower: denser", "", low=0, high=5
+	)
 	unbalanced: float = key(1e-3, "limit of the unbalanced force ratio, membrane counted", "", low=0, high=0.1, openLow=True)
 	tolerance: float = key(
 		0.05, "largest relative distance of transmitted pressure and axial stress from the pressure", "", low=0, high=0.5, openLow=True
@@ -133,7 +138,7 @@ class Numerics:
 	dt: Optional[float] = key(None, "time step; none: safety times the critical one of contacts and membrane", "s", low=0, openLow=True)
 	safety: float = key(0.5, "share of the critical time step", "", low=0, high=1, openLow=True)
 	damping: float = key(0.2, "local (Cundall) damping of NewtonIntegrator", "", low=0, high=1, openHigh=True)
-	verlet: float = key(0.1, "contact detection's skin, as a share of the smallest sphere's radius", "", low=0, high=1)
+	verlet: float = key(0.2, "contact detection's skin, as a share of the smallest sphere's radius", "", low=0, high=1)
 	threads: Optional[int] = key(None, "OpenMP threads; none: as YADE was started", "", low=1, high=1024)
 
 

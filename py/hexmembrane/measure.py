@@ -66,18 +66,43 @@ def meanRadius(membrane):
 	return float(numpy.linalg.norm(x - x.mean(axis=1, keepdims=True), axis=2)[rows].mean()) - membrane.sphereRadius
 
 
+def insideTube(point, x, triangles, perRing):
+	"""Whether a point is inside a tube of rings, its ends closed by fans, however much the tube is folded.
+
+	By the solid angles of the triangles, 2 atan2(a.(b x c), abc + (a.b)c + (b.c)a + (c.a)b), whose sum is 4 pi inside and 0 outside
+	an outward oriented surface (A. Van Oosterom, J. Strackee, The solid angle of a plane triangle, IEEE Trans. Biomed. Eng. 30, 1983).
+
+	:param x: (rings * perRing, 3) points from the lower ring to the upper one. :param triangles: (M, 3), outward.
+	"""
+	ring = numpy.arange(perRing)
+	after = numpy.roll(ring, -1)
+	last, n = len(x) - perRing, len(x)
+	points = numpy.vstack([x, x[:perRing].mean(axis=0), x[last:].mean(axis=0)]) - point
+	lower = numpy.column_stack([after, ring, numpy.full(perRing, n)])
+	upper = numpy.column_stack([last + ring, last + after, numpy.full(perRing, n + 1)])
+	a, b, c = (points[numpy.vstack([triangles, lower, upper])[:, k]] for k in range(3))
+	la, lb, lc = (numpy.linalg.norm(v, axis=1) for v in (a, b, c))
+	dots = [(p * q).sum(axis=1) * r for p, q, r in ((a, b, lc), (b, c, la), (c, a, lb))]
+	angles = 2 * numpy.arctan2((a * numpy.cross(b, c)).sum(axis=1), la * lb * lc + sum(dots))
+	return float(angles.sum()) > 2 * math.pi
+
+
 def escaped(scene, grains):
 	"""Id of a grain whose centre is outside the membrane or behind a platen's face, None when all are inside.
 
-	Outside: on the outer side of the membrane particle that is nearest to the grain, by the surface's normal there.
+	A grain on the inner side of the membrane particle nearest to it, by the surface's normal there, is inside; the few others, where
+	the membrane is folded, are looked at by :func:`insideTube`.
 	"""
 	membrane = scene.membrane
 	x = numpy.array(membrane.positions)
-	outward = normals(x, numpy.array([tuple(t) for t in membrane.triangles]))
+	triangles = numpy.array([tuple(t) for t in membrane.triangles])
+	outward = normals(x, triangles)
 	centre = numpy.array([tuple(O.bodies[i].state.pos) for i in grains.ids])
 	nearest = cKDTree(x).query(centre)[1]
 	bottom, top = scene.faces()
-	lost = (((centre - x[nearest]) * outward[nearest]).sum(axis=1) >= 0) | (centre[:, 2] <= bottom) | (centre[:, 2] >= top)
+	lost = (centre[:, 2] <= bottom) | (centre[:, 2] >= top)
+	for k in numpy.flatnonzero(((centre - x[nearest]) * outward[nearest]).sum(axis=1) >= 0):
+		lost[k] = lost[k] or not insideTube(centre[k], x, triangles, membrane.perRing)
 	return grains.ids[int(numpy.argmax(lost))] if lost.any() else None
 
 

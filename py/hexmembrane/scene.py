@@ -55,6 +55,13 @@ class Scene:
 		"""Ids of the grains: spheres without the membrane's bit."""
 		return [b.id for b in O.bodies if isinstance(b.shape, yade.Sphere) and not b.mask & _MEMBRANE_BIT]
 
+	def setFriction(self, coefficient):
+		"""Give the grains, and the contacts that they have, a coefficient of friction; the lesser of two materials acts."""
+		O.materials["grain"].frictionAngle = math.atan(coefficient)
+		for contact in O.interactions:
+			angles = [O.bodies[i].material.frictionAngle for i in (contact.id1, contact.id2)]
+			contact.phys.tangensOfFrictionAngle = math.tan(min(angles))
+
 	def setPressure(self, pressure):
 		"""Give membrane, servo and top platen the confining pressure [Pa]."""
 		self.pressure.pressure = pressure
@@ -175,6 +182,12 @@ def build(config, packing, say=print):
 		f"R/r = {particleRadius / smallest:.3g} with r = {1e3 * smallest:.4g} mm the smallest grain's radius; "
 		f"E t = {given.young * given.thickness:.4g} N/m, bonds kn = {kn:.4g}, ks = {ks:.4g} N/m"
 	)
+	sag = config.consolidation.pressure * grains.meanDiameter / 2 / (given.young * given.thickness)
+	if sag > 0.5:
+		say(
+			f"WARNING: pressure times grain radius is {sag:.2g} of E t: the membrane will sag deep between the grains and may fold; "
+			"fix: raise membrane.young or membrane.thickness"
+		)
 	level = config.specimen.emod / (2 * config.consolidation.pressure)
 	say(
 		f"grains: {len(grains.ids)}, kn/(p d) = {level:.4g} at {1e-3 * config.consolidation.pressure:g} kPa"

@@ -138,6 +138,8 @@ class Test:
 		with Progress("consolidation", self.quiet) as progress:
 			if self.rows == 0:
 				self._enter("consolidation")
+				if given.friction is not None:
+					self.scene.setFriction(given.friction)
 				self.scene.top.maxVelocity = QUASISTATIC * self.reference.height / self._inertialTime()
 			while not (self.rows and self._atRest(rampTime)):
 				steps = O.iter - self.begun["step"]
@@ -208,6 +210,7 @@ class Test:
 	def beginShear(self):
 		"""Strains count from here and the platens are set to their velocities."""
 		self._enter("shear")
+		self.scene.setFriction(self.config.specimen.friction)
 		given = self.config.shear
 		share = {"top": (0.0, 1.0), "both": (0.5, 0.5)}[given.moving]
 		for drive, part in zip((self.scene.bottom, self.scene.top), share):

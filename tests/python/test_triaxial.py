@@ -21,8 +21,8 @@ MAIN = ROOT / "py" / "hexmembrane" / "__main__.py"
 TINY = {
 	"title": "tiny",
 	"specimen": {"radius": 0.02, "height": 0.05, "gradation": "sand.csv", "grains": 200, "porosity": 0.45, "emod": 3e7, "seed": 3},
-	"membrane": {"sizeRatio": 1.0},
-	"consolidation": {"pressure": 1e5, "unbalanced": 5e-3, "tolerance": 0.1},
+	"membrane": {"sizeRatio": 1.0, "young": 3e6, "thickness": 5e-4},
+	"consolidation": {"pressure": 1e5, "friction": 0.2, "unbalanced": 5e-3, "tolerance": 0.1},
 	"shear": {"strain": 0.02, "velocity": 0.08},
 	"output": {"records": 12, "vtkEvery": 6, "checkpointEvery": 4, "consolidationSteps": 400},
 }
@@ -268,6 +268,42 @@ def test_grainOutsideIsSeen(whole, O):
 	for place in ((0.03, 0, 0.025), (0, 0, 0.06), (0, 0, -0.01)):
 		O.bodies[lost].state.pos = place
 		assert measure.escaped(handles, grains) == lost
+
+
+def test_frictionAfterConsolidation(whole, O):
+	"""Contacts made with the consolidation's friction have the test's own in shear; those of the membrane have none."""
+	from hexmembrane import scene, stages
+
+	stages.load(whole[0] / "consolidated.yade.gz")
+	handles = scene.Scene()
+	grains, membrane = set(handles.grainIds()), set(handles.membrane.ids)
+	found = {"grains": set(), "membrane": set(), "platens": set()}
+	for contact in O.interactions:
+		ids = {contact.id1, contact.id2}
+		kind = "grains" if ids <= grains else "membrane" if ids & membrane else "platens"
+		found[kind].add(round(contact.phys.tangensOfFrictionAngle, 12))
+	assert found == {"grains": {0.5}, "membrane": {0.0}, "platens": {0.3}}
+	handles.setFriction(0.1)
+	assert {round(c.phys.tangensOfFrictionAngle, 12) for c in O.interactions} == {0.1, 0.0}
+
+
+def test_insideTube():
+	"""Inside and outside of a folded tube: one with a collar that overhangs itself."""
+	from hexmembrane.measure import insideTube
+
+	perRing = 40
+	angle = 2 * numpy.pi * numpy.arange(perRing) / perRing
+	profile = [(1, 0), (1, 1), (2, 0.8), (2, 1.5), (1, 1.2), (1, 2)]
+	x = numpy.vstack([numpy.column_stack([r * numpy.cos(angle), r * numpy.sin(angle), numpy.full(perRing, z)]) for r, z in profile])
+	a, b = numpy.arange(perRing), numpy.roll(numpy.arange(perRing), -1)
+	triangles = []
+	for k in range(len(profile) - 1):
+		low, high = k * perRing, (k + 1) * perRing
+		triangles += [numpy.column_stack([low + a, low + b, high + a]), numpy.column_stack([low + b, high + b, high + a])]
+	triangles = numpy.vstack(triangles)
+	inside = [(0, 0, 0.1), (0.9, 0, 0.5), (0, -1.9, 1.0), (1.5, 0.2, 1.2), (0, 0, 1.9)]
+	outside = [(1.1, 0, 0.5), (1.5, 0, 0.85), (0, 1.9, 1.5), (0, 0, -0.1), (0, 0, 2.1), (5, 5, 1)]
+	assert [insideTube(p, x, triangles, perRing) for p in inside + outside] == [True] * len(inside) + [False] * len(outside)
 
 
 def test_emptySceneIsWanted(O):
