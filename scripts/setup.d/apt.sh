@@ -12,7 +12,7 @@ needAptTools() {
 	done
 	((${#missing[@]} == 0)) || die "this system lacks: ${missing[*]}" \
 		"The set-up downloads Debian 13's packages with apt and dpkg, so it needs a Debian, Ubuntu or related system." \
-		"Elsewhere build the plugin for a YADE of your own: see 'A YADE of your own' in README.md."
+		"Elsewhere build the plugin for a YADE of your own: see 'With a YADE of your own' in README.md."
 	[[ -r $debianKeyring ]] || die "there is no $debianKeyring: the packages could not be verified." \
 		"fix: apt-get install debian-archive-keyring"
 }
