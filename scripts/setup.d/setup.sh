@@ -62,8 +62,8 @@ buildPlugin() {
 		}
 		echo "$hostId" >"$stamp"
 	fi
-	# A file that includes YADE takes up to 2.6 GB to compile.
-	memoryGb=$(awk '/^MemTotal:/ { print int($2 / 2.6e6) }' /proc/meminfo)
+	# A unit of the plugin takes up to 3.2 GB to compile.
+	memoryGb=$(awk '/^MemTotal:/ { print int($2 / 3.2e6) }' /proc/meminfo)
 	jobs=$(processors)
 	((memoryGb >= jobs)) || jobs=$((memoryGb > 0 ? memoryGb : 1))
 	"${entry[@]}" ninja -C "$buildDir" -j "$jobs" | tellBuild || die "the build failed (see above)."
