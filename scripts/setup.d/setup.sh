@@ -93,9 +93,27 @@ prepare() {
 	buildPlugin
 }
 
-# runBeside COMMAND...: replaces this script by COMMAND beside YADE. An interrupt from the terminal reaches the command alone: in
-# between, bubblewrap would end at once and take the command with it before it can close its files.
+# runBeside COMMAND...: runs COMMAND beside YADE as the last thing of this script, with its exit code. Signals must reach COMMAND, which
+# has files to close, and nothing in between: bubblewrap would end at once and take COMMAND with it. So an interrupt from the terminal,
+# which goes to all of them, is ignored on the way, and a termination is handed on. COMMAND does not outlive this script, but this
+# script outlives the shell that has started it (nohup).
 runBeside() {
-	trap '' INT
-	exec "${entry[@]}" env --default-signal=INT PYTHONPATH="$checkout/py" "$@"
+	local pid status=0
+	trap '' INT QUIT
+	"${entry[@]}" env --default-signal=INT,QUIT PYTHONPATH="$checkout/py" "$@" <&0 &
+	pid=$!
+	trap 'terminate $pid' TERM
+	while :; do
+		status=0
+		wait "$pid" || status=$?
+		kill -0 "$pid" 2>/dev/null || break
+	done
+	exit "$status"
+}
+
+# Bubblewrap has exactly one child, the command; without it (natively) the process is the command itself.
+terminate() {
+	local target=$1
+	[[ $host == native ]] || read -r target _ <"/proc/$1/task/$1/children" || true
+	kill -TERM "${target:-$1}" 2>/dev/null || true
 }
