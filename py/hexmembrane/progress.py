@@ -39,7 +39,7 @@ class Progress:
 				file=self.stream,
 				leave=True,
 				dynamic_ncols=True,
-				bar_format="{desc:<13} {percentage:5.1f}% |{bar}| {postfix}",
+				bar_format="{desc} |{bar}|",
 			)
 
 	def left(self, done):
@@ -56,15 +56,15 @@ class Progress:
 		if self.quiet:
 			return
 		text = ", ".join(f"{name} {value}" for name, value in state.items())
-		text = f"{text}, {clock(self.left(done))} left"
+		line = f"{self.stage}: {100 * done:5.1f} %, {text}, {clock(self.left(done))} left"
 		if self.bar is not None:
 			self.bar.n = done
-			self.bar.set_postfix_str(text, refresh=True)
+			self.bar.set_description_str(line, refresh=True)
 			return
 		now = time.monotonic()
 		if now - self.said >= self.every or done == 1.0:
 			self.said = now
-			print(f"{self.stage}: {100 * done:5.1f} %, {text}", file=self.stream, flush=True)
+			print(line, file=self.stream, flush=True)
 
 	def say(self, text):
 		"""A line of its own, above the bar if there is one."""

@@ -52,7 +52,7 @@ def test_barOnTerminal():
 		shown.update(0.5, strain="6.00 %", q="210.0 kPa")
 		shown.say("a line")
 	text = stream.getvalue()
-	assert "50.0%" in text and "q 210.0 kPa" in text and "left" in text and "a line" in text and "\r" in text
+	assert "50.0 %" in text and "q 210.0 kPa" in text and "left" in text and "a line" in text and "\r" in text
 
 
 def test_quiet():
