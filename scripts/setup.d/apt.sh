@@ -51,7 +51,7 @@ privateApt() {
 	done >"$folder/status"
 	say "reading the package index of Debian 13 ($debianArchive)"
 	if ! apt-get -q=2 update >"$folder/log" 2>&1; then
-		if grep -qE 'NO_PUBKEY|EXPKEYSIG|not signed' "$folder/log"; then
+		if grep -qE 'NO_PUBKEY|EXPKEYSIG|KEYEXPIRED' "$folder/log"; then
 			die "the keys in $debianKeyring do not verify Debian 13's archive: they are too old." \
 				"fix: apt-get install --only-upgrade debian-archive-keyring (it must know 'trixie')"
 		fi
