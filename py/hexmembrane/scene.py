@@ -19,7 +19,7 @@ _MEMBRANE_BIT = 2
 class Scene:
 	"""Handles to the parts of the scene in ``O``, found by their types; make a new one after ``O.load``.
 
-	Attributes: ``membrane``, ``bonds``, ``pressure``, ``servo``, ``oRings``, ``bottom`` and ``top`` (the platens' drives).
+	Attributes: ``membrane``, ``bonds``, ``pressure``, ``servo``, ``oRings``, ``guard``, ``bottom`` and ``top`` (the platens' drives).
 
 	:raises RuntimeError: the scene in ``O`` is not one of :func:`build`.
 	"""
@@ -28,13 +28,13 @@ class Scene:
 		found = {}
 		for engine in O.engines:
 			found.setdefault(type(engine).__name__, []).append(engine)
-		wanted = {"MembraneBonds": 1, "MembranePressure": 1, "MembraneRadialServo": 1, "MembraneORings": 1, "PlatenDrive": 2}
+		wanted = {"MembraneBonds": 1, "MembranePressure": 1, "MembraneRadialServo": 1, "MembraneORings": 1, "RunawayGuard": 1, "PlatenDrive": 2}
 		for name, count in wanted.items():
 			if len(found.get(name, ())) != count:
 				raise RuntimeError(
 					f"Scene.engines = {len(found.get(name, ()))} {name}: {count} expected; fix: load a state saved by this test"
 				)
-		self.bonds, self.pressure, self.servo, self.oRings = (found[name][0] for name in list(wanted)[:4])
+		self.bonds, self.pressure, self.servo, self.oRings, self.guard = (found[name][0] for name in list(wanted)[:5])
 		self.membrane = self.bonds.membrane
 		self.bottom, self.top = sorted(found["PlatenDrive"], key=lambda drive: -drive.direction[2])
 		self._half = [O.bodies[drive.platen].shape.height / 2 for drive in (self.bottom, self.top)]
@@ -209,7 +209,7 @@ def _setTimeStep(config, smallest, largest, particleRadius, say):
 
 
 def checkTimeStep(config, scene, say):
-	"""Lower O.dt if the contacts that have formed ask for it; an explicit one is then an error."""
+	"""Lower O.dt if the contacts that have formed ask for it by 10 % or more; an explicit one above the critical is an error."""
 	critical = timestep.measured(scene)
 	if config.numerics.dt is not None and config.numerics.dt > critical:
 		raise ValueError(
@@ -217,6 +217,6 @@ def checkTimeStep(config, scene, say):
 			"fix: lower it or leave it out"
 		)
 	allowed = config.numerics.safety * critical
-	if config.numerics.dt is None and O.dt > allowed:
+	if config.numerics.dt is None and O.dt > 1.1 * allowed:
 		say(f"time step lowered from {O.dt:.4g} s to {allowed:.4g} s: {config.numerics.safety:g} of the critical one of the present contacts")
 		O.dt = allowed

@@ -112,6 +112,7 @@ class Test:
 			(self.out / old).unlink(missing_ok=True)
 		load(self.out / state)
 		self.scene = scene.Scene()
+		self.scene.guard.checkpoint = str(self.out / state)
 
 	def _show(self, progress, done):
 		row = self.last
@@ -149,13 +150,13 @@ class Test:
 				self._rampedChunk(rampTime, min(self.config.output.consolidationSteps, given.maxSteps - steps))
 				self.row()
 				self._show(progress, self._consolidationDone(rampTime))
+				scene.checkTimeStep(self.config, self.scene, progress.say)
 				self._maybeCheckpoint()
 			progress.update(1.0, porosity=f"{self.last['porosity']:.4f}", coordination=f"{self.last['coordination']:.2f}")
 			progress.say(
 				f"consolidated after {O.iter - self.begun['step']} steps: unbalanced {self.last['unbalanced']:.2e}, "
 				f"transmitted {1e-3 * self.last['sigma3_transmitted_group3']:.2f} kPa of {1e-3 * given.pressure:g} kPa"
 			)
-			scene.checkTimeStep(self.config, self.scene, progress.say)
 		self.beginShear()
 		self.checkpoint("consolidated")
 
@@ -243,6 +244,8 @@ class Test:
 				every = self.config.output.vtkEvery
 				if every and ((self.rows - 1) % every == 0 or self.rows > total):
 					self._frame()
+				if self._checkpointDue():
+					scene.checkTimeStep(self.config, self.scene, progress.say)
 				self._maybeCheckpoint()
 			self._report(progress)
 		self.checkpoint("sheared")
@@ -279,9 +282,12 @@ class Test:
 		if self.config.output.vtkEvery:
 			self.frames.write(self.scene, self.grains)
 
-	def _maybeCheckpoint(self):
+	def _checkpointDue(self):
 		every = self.config.output.checkpointEvery
-		if every and self.rows % every == 0:
+		return every > 0 and self.rows % every == 0
+
+	def _maybeCheckpoint(self):
+		if self._checkpointDue():
 			self.checkpoint()
 
 
