@@ -7,9 +7,11 @@ debianKeyring=/usr/share/keyrings/debian-archive-keyring.gpg
 # What must be there on the host itself.
 needAptTools() {
 	local tool missing=()
-	for tool in apt-get apt-cache apt-config dpkg-deb gpgv tar sha256sum xargs flock; do
+	for tool in apt-get apt-cache apt-config dpkg-deb tar sha256sum xargs flock; do
 		command -v "$tool" >/dev/null || missing+=("$tool")
 	done
+	# apt verifies signatures with either
+	command -v gpgv >/dev/null || command -v sqv >/dev/null || missing+=(gpgv)
 	((${#missing[@]} == 0)) || die "this system lacks: ${missing[*]}" \
 		"The set-up downloads Debian 13's packages with apt and dpkg, so it needs a Debian, Ubuntu or related system." \
 		"Elsewhere build the plugin for a YADE of your own: see 'With a YADE of your own' in README.md."
