@@ -1,0 +1,172 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "LinearContact.hpp"
+
+#include <core/Omega.hpp>
+#include <core/Scene.hpp>
+#include <kernels/Check.hpp>
+#include <pkg/common/Sphere.hpp>
+
+#include <stdexcept>
+
+namespace yade {
+
+YADE_PLUGIN((LinearMat)(LinearPhys)(Ip2_LinearMat_LinearMat_LinearPhys));
+
+namespace {
+
+bool given(Real value) { return !math::isnan(value); }
+
+void requireStrength(const string& parameter, Real strength)
+{
+	if (!(strength >= 0)) hexmembrane::reject(parameter, strength, "a strength must not be negative", "give a number >= 0 in N, or inf");
+}
+
+void refuseBoth(const string& parameter, Real value)
+{
+	if (given(value)) hexmembrane::reject(parameter, value, "stiffness is given twice", "either kn and ks, or emod and kratio; take one back by setting it to nan");
+}
+
+// young and poisson may be as they were, as they must be now, or not there; anything else was set by hand.
+void refuseDerived(const string& parameter, Real value, Real before, Real now)
+{
+	if (given(value) && value != before && value != now)
+		hexmembrane::reject(parameter, value, "follows from the stiffness", "give kn and ks, or emod and kratio");
+}
+
+} // namespace
+
+LinearMat::Values LinearMat::values() const { return {kn, ks, emod, kratio, rollingFriction, cbTensile, cbShear, young, poisson}; }
+
+void LinearMat::check() const
+{
+	if (given(kn)) hexmembrane::requirePositive("LinearMat.kn", kn, "N/m");
+	if (given(ks)) hexmembrane::requireNonNegative("LinearMat.ks", ks, "N/m");
+	if (given(emod)) hexmembrane::requirePositive("LinearMat.emod", emod, "Pa");
+	if (given(kratio)) hexmembrane::requirePositive("LinearMat.kratio", kratio, "1");
+	if (given(kn) || given(ks)) {
+		refuseBoth("LinearMat.emod", emod);
+		refuseBoth("LinearMat.kratio", kratio);
+	}
+	hexmembrane::requireNonNegative("LinearMat.rollingFriction", rollingFriction, "1");
+	requireStrength("LinearMat.cbTensile", cbTensile);
+	requireStrength("LinearMat.cbShear", cbShear);
+}
+
+void LinearMat::postLoad(LinearMat&)
+{
+	const Real youngNow = 0.5 * M_PI * emod, poissonNow = given(kratio) ? 1 / kratio : ks / kn;
+	try {
+		check();
+		refuseDerived("LinearMat.young", young, accepted.young, youngNow);
+		refuseDerived("LinearMat.poisson", poisson, accepted.poisson, poissonNow);
+	} catch (const std::invalid_argument&) {
+		std::tie(kn, ks, emod, kratio) = std::tie(accepted.kn, accepted.ks, accepted.emod, accepted.kratio);
+		std::tie(rollingFriction, cbTensile, cbShear) = std::tie(accepted.rollingFriction, accepted.cbTensile, accepted.cbShear);
+		std::tie(young, poisson) = std::tie(accepted.young, accepted.poisson);
+		throw;
+	}
+	young = youngNow;
+	poisson = poissonNow;
+	accepted = values();
+}
+
+Real LinearMat::getFriction() const { return math::tan(frictionAngle); }
+
+void LinearMat::setFriction(Real coefficient)
+{
+	hexmembrane::requireNonNegative("LinearMat.friction", coefficient, "1");
+	frictionAngle = math::atan(coefficient);
+}
+
+void LinearMat::pyHandleCustomCtorArgs(boost::python::tuple&, boost::python::dict& keywords)
+{
+	// A property is no attribute, so YADE's constructor from keywords does not know it.
+	if (!keywords.has_key("friction")) return;
+	const Real coefficient = boost::python::extract<Real>(keywords["friction"]);
+	if (keywords.has_key("frictionAngle")) hexmembrane::reject("LinearMat.friction", coefficient, "friction is given twice", "friction or frictionAngle");
+	setFriction(coefficient);
+	keywords["friction"].del();
+}
+
+void LinearMat::requireComplete() const
+{
+	if (!given(emod) && !given(kn)) hexmembrane::reject("LinearMat.kn", kn, "no stiffness is given", "give kn and ks, or emod and kratio");
+	if (given(emod)) hexmembrane::requirePositive("LinearMat.kratio", kratio, "1");
+	else
+		hexmembrane::requireNonNegative("LinearMat.ks", ks, "N/m");
+	hexmembrane::requireNonNegative("LinearMat.friction", getFriction(), "1");
+}
+
+hexmembrane::Springs LinearMat::springs(Real shape) const
+{
+	if (given(emod)) return hexmembrane::springsByModulus(emod, kratio, shape);
+	return {kn, ks};
+}
+
+void LinearPhys::bond(Real tensile, Real shear)
+{
+	if (!(tensile > 0)) hexmembrane::reject("LinearPhys.bond.tensile", tensile, "must be positive", "give a number > 0 in N, or inf");
+	if (!(shear > 0)) hexmembrane::reject("LinearPhys.bond.shear", shear, "must be positive", "give a number > 0 in N, or inf");
+	tensileStrength = tensile;
+	shearStrength = shear;
+	bonded = true;
+}
+
+namespace {
+
+// Radius of the body if it is a sphere, NaN for a boundary.
+Real sphereRadius(const Body& body)
+{
+	const auto sphere = dynamic_cast<const Sphere*>(body.shape.get());
+	return sphere ? sphere->radius : NaN;
+}
+
+void bondByMaterial(LinearPhys& phys, const LinearMat& a, const LinearMat& b)
+{
+	const Real tensile = math::min(a.cbTensile, b.cbTensile), shear = math::min(a.cbShear, b.cbShear);
+	if (tensile > 0 && shear > 0) phys.bond(tensile, shear);
+}
+
+} // namespace
+
+void Ip2_LinearMat_LinearMat_LinearPhys::go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2, const shared_ptr<Interaction>& contact)
+{
+	if (contact->phys) return;
+	const LinearMat &a = static_cast<const LinearMat&>(*material1), &b = static_cast<const LinearMat&>(*material2);
+	a.requireComplete();
+	b.requireComplete();
+	const Real r1 = sphereRadius(*Body::byId(contact->getId1(), scene)), r2 = sphereRadius(*Body::byId(contact->getId2(), scene));
+	if (!given(r1) && !given(r2))
+		throw std::runtime_error("Ip2_LinearMat_LinearMat_LinearPhys: neither #" + std::to_string(contact->getId1()) + " nor #" + std::to_string(contact->getId2())
+		                         + " is a Sphere; fix: use these contacts for spheres and for spheres on boundaries");
+
+	auto phys = boost::make_shared<LinearPhys>();
+	phys->spheres = given(r1) && given(r2);
+	const Real shape = phys->spheres ? hexmembrane::contactShape(r1, r2) : hexmembrane::contactShape(given(r1) ? r1 : r2);
+	const Real lever = phys->spheres ? hexmembrane::rollingRadius(r1, r2) : (given(r1) ? r1 : r2);
+	const auto springs = hexmembrane::inSeries(a.springs(shape), b.springs(shape));
+	phys->kn = springs.kn;
+	phys->ks = springs.ks;
+	phys->tangensOfFrictionAngle = math::min(a.getFriction(), b.getFriction());
+	phys->rollingArm = math::min(a.rollingFriction, b.rollingFriction) * lever;
+	phys->kr = phys->rollingArm > 0 ? phys->ks * lever * lever : 0;
+	if (bondNewContacts) bondByMaterial(*phys, a, b);
+	contact->phys = phys;
+}
+
+int Ip2_LinearMat_LinearMat_LinearPhys::bondContacts()
+{
+	Scene* const here = Omega::instance().getScene().get();
+	int made = 0;
+	for (const auto& contact : *here->interactions) {
+		LinearPhys* phys = contact->isReal() ? dynamic_cast<LinearPhys*>(contact->phys.get()) : nullptr;
+		if (!phys || phys->bonded) continue;
+		const auto material = [&](Body::id_t id) { return dynamic_cast<const LinearMat*>(Body::byId(id, here)->material.get()); };
+		const LinearMat *a = material(contact->getId1()), *b = material(contact->getId2());
+		if (a && b) bondByMaterial(*phys, *a, *b);
+		made += phys->bonded;
+	}
+	return made;
+}
+
+} // namespace yade

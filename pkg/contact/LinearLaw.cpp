@@ -1,0 +1,109 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "LinearLaw.hpp"
+
+#include <core/Scene.hpp>
+
+namespace yade {
+
+YADE_PLUGIN((Law2_ScGeom_LinearPhys_Linear));
+
+bool Law2_ScGeom_LinearPhys_Linear::go(shared_ptr<IGeom>& geometry, shared_ptr<IPhys>& physics, Interaction* contact)
+{
+	const ScGeom& geom = static_cast<const ScGeom&>(*geometry);
+	LinearPhys& phys = static_cast<LinearPhys&>(*physics);
+	// Without friction, rolling resistance and bond, and with nothing left of them (they can be switched off while a test runs), only the normal force is there.
+	const bool normalOnly = !(phys.tangensOfFrictionAngle > 0) && !(phys.rollingArm > 0) && !phys.bonded && phys.shearForce == Vector3r::Zero()
+	        && phys.moment == Vector3r::Zero();
+	if (!normalOnly) return advance(geom, phys, *contact);
+	if (geom.penetrationDepth < 0) return false;
+	phys.normalForce = phys.kn * geom.penetrationDepth * geom.normal;
+	if (scene->trackEnergy) book({phys.kn * geom.penetrationDepth, false, hexmembrane::BondBreak::none, 0, 0, 0}, phys);
+	pushApart(geom, phys, *contact);
+	return true;
+}
+
+bool Law2_ScGeom_LinearPhys_Linear::advance(const ScGeom& geom, LinearPhys& phys, const Interaction& contact)
+{
+	const hexmembrane::ContactLaw law = phys.law();
+	hexmembrane::ContactMotion motion{geom.penetrationDepth, geom.shearIncrement(), Vector3r::Zero()};
+	geom.rotate(phys.shearForce);
+	if (law.kr > 0 && !phys.bonded) {
+		const State &state1 = *Body::byId(contact.getId1(), scene)->state, &state2 = *Body::byId(contact.getId2(), scene)->state;
+		motion.bend = scene->dt * hexmembrane::acrossNormal(state2.angVel - state1.angVel, geom.normal);
+		geom.rotate(phys.moment);
+	}
+	const hexmembrane::ContactStep step = hexmembrane::advanceContact(law, motion, phys.shearForce, phys.moment, phys.bonded);
+	phys.normalForce = step.normal * geom.normal;
+	if (step.bond == hexmembrane::BondBreak::tension) {
+#pragma omp atomic
+		tensileBreaks++;
+	} else if (step.bond == hexmembrane::BondBreak::shear) {
+#pragma omp atomic
+		shearBreaks++;
+	}
+	if (scene->trackEnergy) book(step, phys);
+	if (step.open) return false;
+	push(geom, phys, contact);
+	return true;
+}
+
+void Law2_ScGeom_LinearPhys_Linear::pushApart(const ScGeom& geom, const LinearPhys& phys, const Interaction& contact) const
+{
+	if (!phys.spheres) return push(geom, phys, contact);
+	scene->forces.addForce(contact.getId1(), -phys.normalForce);
+	scene->forces.addForce(contact.getId2(), phys.normalForce);
+}
+
+void Law2_ScGeom_LinearPhys_Linear::push(const ScGeom& geom, const LinearPhys& phys, const Interaction& contact) const
+{
+	const Body::id_t id1 = contact.getId1(), id2 = contact.getId2();
+	const Vector3r force = phys.normalForce + phys.shearForce;
+	Vector3r torque1, torque2;
+	if (phys.spheres) {
+		// The contact point lies half way through the overlap, on the line of centres, where the normal force has no moment.
+		const Vector3r turning = geom.normal.cross(phys.shearForce);
+		torque1 = -(geom.radius1 - 0.5 * geom.penetrationDepth) * turning;
+		torque2 = -(geom.radius2 - 0.5 * geom.penetrationDepth) * turning;
+	} else {
+		const Vector3r &centre1 = Body::byId(id1, scene)->state->pos, &centre2 = Body::byId(id2, scene)->state->pos;
+		const Vector3r shift = scene->isPeriodic ? scene->cell->intrShiftPos(contact.cellDist) : Vector3r::Zero();
+		torque1 = -(geom.contactPoint - centre1).cross(force);
+		torque2 = (geom.contactPoint - centre2 - shift).cross(force);
+	}
+	scene->forces.addForce(id1, -force);
+	scene->forces.addForce(id2, force);
+	scene->forces.addTorque(id1, torque1 - phys.moment);
+	scene->forces.addTorque(id2, torque2 + phys.moment);
+}
+
+// YADE makes a name at its first use, which moves the table under the other threads of the interaction loop: all names at once, one thread at a time.
+void Law2_ScGeom_LinearPhys_Linear::nameEnergies()
+{
+#pragma omp critical(hexmembraneContactEnergies)
+	{
+		int last = bondDissipIx;
+		if (last < 0) {
+			scene->energy->findId("elastPotential", elastPotentialIx, /*reset*/ true);
+			scene->energy->findId("plastDissip", plastDissipIx);
+			scene->energy->findId("rollDissip", rollDissipIx);
+			scene->energy->findId("bondDissip", last);
+#pragma omp atomic write
+			bondDissipIx = last;
+		}
+	}
+}
+
+void Law2_ScGeom_LinearPhys_Linear::book(const hexmembrane::ContactStep& step, const LinearPhys& phys)
+{
+	int named;
+#pragma omp atomic read
+	named = bondDissipIx;
+	if (named < 0) nameEnergies();
+	const Real elastic = hexmembrane::contactEnergy(phys.law(), step.normal, phys.shearForce, phys.moment);
+	scene->energy->add(elastic, "elastPotential", elastPotentialIx, /*reset*/ true);
+	if (step.slipWork != 0) scene->energy->add(step.slipWork, "plastDissip", plastDissipIx);
+	if (step.rollWork != 0) scene->energy->add(step.rollWork, "rollDissip", rollDissipIx);
+	if (step.bondEnergy != 0) scene->energy->add(step.bondEnergy, "bondDissip", bondDissipIx);
+}
+
+} // namespace yade

@@ -1,0 +1,39 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "LinearContact.hpp"
+
+namespace yade {
+
+class Law2_ScGeom_LinearPhys_Linear : public LawFunctor {
+public:
+	bool go(shared_ptr<IGeom>& geometry, shared_ptr<IPhys>& physics, Interaction* contact) override;
+
+private:
+	bool advance(const ScGeom& geom, LinearPhys& phys, const Interaction& contact);
+	void pushApart(const ScGeom& geom, const LinearPhys& phys, const Interaction& contact) const;
+	void push(const ScGeom& geom, const LinearPhys& phys, const Interaction& contact) const;
+	void nameEnergies();
+	void book(const hexmembrane::ContactStep& step, const LinearPhys& phys);
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS(Law2_ScGeom_LinearPhys_Linear,LawFunctor,
+		"PFC's linear contact laws on spheres and on spheres against boundaries: linear, linear with rolling resistance, linear contact bond. Every contact does what its :yref:`LinearPhys` asks for and no more.\n\n"
+		"Normal force $F_n=k_n u$, no tension: the contact is erased when $u<0$. Shear $F_s\\leftarrow F_s-k_s\\Delta u_s$, carried along with the contact plane, cut to $\\mu F_n$. "
+		"Rolling resistance $M\\leftarrow M-k_r\\Delta\\theta_b$, $k_r=k_s\\bar R^2$, bending only, cut to $\\mu_r\\bar R F_n$. "
+		"Bonded: $F_n=k_n u$ of either sign, no slip, no moment; tension above the strength takes both forces, shear above the strength leaves them in compression as far as $\\mu F_n$ holds.\n\n"
+		"The geometry is :yref:`ScGeom` (no 6D, no orientations). Its shear increment is PFC's true relative displacement at the contact point with ``Ig2_Sphere_Sphere_ScGeom(avoidGranularRatcheting=False)``; with YADE's default the tangential displacement of centres is $1+u/l$ times as long and energies close up to that factor only.\n\n"
+		"With :yref:`O.trackEnergy<Omega.trackEnergy>`: 'elastPotential', 'plastDissip' (sliding), 'rollDissip' (rolling), 'bondDissip' (elastic energy set free by breaking bonds).",
+		((int,tensileBreaks,0,Attr::readonly,"Bonds that broke in tension so far."))
+		((int,shearBreaks,0,Attr::readonly,"Bonds that broke in shear so far."))
+		((int,elastPotentialIx,-1,(Attr::hidden|Attr::noSave),"Index of the elastic energy."))
+		((int,plastDissipIx,-1,(Attr::hidden|Attr::noSave),"Index of the work of sliding."))
+		((int,rollDissipIx,-1,(Attr::hidden|Attr::noSave),"Index of the work of rolling."))
+		((int,bondDissipIx,-1,(Attr::hidden|Attr::noSave),"Index of the energy of broken bonds."))
+	);
+	// clang-format on
+	FUNCTOR2D(ScGeom, LinearPhys);
+};
+REGISTER_SERIALIZABLE(Law2_ScGeom_LinearPhys_Linear);
+
+} // namespace yade
