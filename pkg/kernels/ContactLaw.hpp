@@ -64,8 +64,8 @@ struct ContactMotion {
 
 enum class BondBreak { none, tension, shear };
 
-/// What a step brought, apart from the loads themselves. Works (J) are >= 0 but for slip while the limit falls; each is exact for a straight path, so that
-/// elastic energy + works = work done on the contact (normal force apart, which is elastic up to the step in which a contact opens or closes).
+/// What a step brought, apart from the loads themselves. Works (J) are those of the trapezoid rule, by which leapfrog's kinetic energy
+/// changes too: gain in elastic energy + works = sum of (load before + load after)/2 . displacement, to rounding, whatever the path.
 struct ContactStep {
 	double normal;     ///< N (N)
 	bool open;         ///< nothing is transmitted any more, nothing is remembered
@@ -104,7 +104,7 @@ inline Vec3 carried(const Vec3& load, const ContactTurn& turn)
 }
 
 /// Work that a spring of this stiffness loses when its trial load is cut down to `kept` while the load was `before` at the start of the step:
-/// (before+kept)/2 . (trial-kept)/stiffness, which is the work done on it less its gain in elastic energy, to the last bit. PFC's definition.
+/// (before+kept)/2 . (trial-kept)/stiffness, which is the work done on it by the trapezoid rule less its gain in elastic energy. PFC's definition.
 inline double cutWork(const Vec3& before, const Vec3& trial, const Vec3& kept, double stiffness)
 {
 	return 0.5 * (before + kept).dot(trial - kept) / stiffness;

@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The contact laws against YADE's own where the two coincide, and against themselves: swapped ids, saved and loaded, energy."""
+
+import math
+
+import numpy as np
+import pytest
+from contactScene import DENSITY, EMOD, FRICTION, KRATIO, ROLLING, apart, engines, floor, law, material, pair, stateOf, swarm
+from yade import (
+	CohFrictMat,
+	Ig2_Sphere_Sphere_ScGeom6D,
+	InteractionLoop,
+	Ip2_CohFrictMat_CohFrictMat_CohFrictPhys,
+	Law2_ScGeom6D_CohFrictPhys_CohesionMoment,
+	Law2_ScGeom_FrictPhys_CundallStrack,
+	utils,
+)
+
+RADIUS = 1e-3
+DT = 5e-7  # 0.05 of sqrt(m/kn)
+STEPS = 2500  # the swarm meets, collides and parts
+
+
+def run(O, steps=STEPS):
+	O.dt = DT
+	O.run(steps, True)
+
+
+def untilContacts(O, wanted, least=3):
+	"""Runs until that many contacts are as wanted; returns all contacts' phys."""
+	for _ in range(STEPS // 10):
+		run(O, 10)
+		phys = [i.phys for i in O.interactions if i.isReal]
+		if sum(map(wanted, phys)) >= least:
+			return phys
+	raise AssertionError("there were never %d such contacts" % least)
+
+
+def relative(a, b):
+	"""Largest difference of positions, of velocities and of spins, each over the largest of its kind; NaN anywhere makes it NaN."""
+	parts = [slice(0, 3), slice(3, 6), slice(6, 9)]
+	return float(np.max([np.abs(a[:, p] - b[:, p]).max() / np.abs(b[:, p]).max() for p in parts]))
+
+
+def test_helperSeesDifferences():
+	a = np.ones((2, 9))
+	assert relative(a, a) == 0 and relative(a * (1 + 1e-9), a) > 0.9e-9
+	b = a.copy()
+	b[1, 7] = math.nan
+	assert not relative(b, a) < 1
+
+
+def collide(O, **changes):
+	material(O, **changes)
+	swarm(O)
+	engines(O, ratcheting=True)
+	run(O)
+	return stateOf(O)
+
+
+def test_linearAsCundallStrack(O):
+	"""YADE's law takes our contacts (a LinearPhys is a FrictPhys) and, without rolling resistance, makes the same of them; any radii."""
+	ours = collide(O, rollingFriction=0)
+	O.reset()
+	material(O, rollingFriction=0)
+	swarm(O)
+	start = stateOf(O)
+	engines(O, ratcheting=True)
+	functors = O.engines[2]
+	O.engines = [
+		*O.engines[:2],
+		InteractionLoop(functors.geomDispatcher.functors, functors.physDispatcher.functors, [Law2_ScGeom_FrictPhys_CundallStrack()]),
+		O.engines[3],
+	]
+	run(O)
+	assert relative(ours, stateOf(O)) < 1e-10
+	assert np.abs(ours[:, 6:] - start[:, 6:]).max() > 0.1 * np.abs(start[:, 6:]).max()  # they did collide
+	# and it is sensitive: rolling resistance changes it
+	O.reset()
+	assert relative(collide(O), ours) > 1e-3
+
+
+def cohesive(O, radii):
+	"""YADE's cohesive-frictional law with moments, not cohesive, incremental, matched: kn = E R, kr = alpha R^2 ks = ks (R/2)^2, cap eta R Fn = mu_r R/2 Fn."""
+	O.materials.append(
+		CohFrictMat(
+			young=0.5 * math.pi * EMOD,
+			poisson=1 / KRATIO,
+			frictionAngle=math.atan(FRICTION),
+			density=DENSITY,
+			isCohesive=False,
+			momentRotationLaw=True,
+			alphaKr=0.25,
+			alphaKtw=0,
+			etaRoll=0.5 * ROLLING,
+			etaTwist=0,
+		)
+	)
+	swarm(O, radii=radii)
+	engines(O)
+	O.engines = [
+		*O.engines[:2],
+		InteractionLoop(
+			[Ig2_Sphere_Sphere_ScGeom6D()],
+			[Ip2_CohFrictMat_CohFrictMat_CohFrictPhys()],
+			[Law2_ScGeom6D_CohFrictPhys_CohesionMoment(always_use_moment_law=True, useIncrementalForm=True)],
+		),
+		O.engines[3],
+	]
+	run(O)
+	return stateOf(O)
+
+
+def test_rollingResistanceAsYadesCohesiveFrictional(O):
+	"""Equal radii: the same to rounding. Unequal radii: not, as YADE takes kn from E1 R1 and E2 R2, kr from R1 R2 and the cap from the smaller radius."""
+	equal, unequal = (RADIUS, RADIUS), (0.8 * RADIUS, 1.2 * RADIUS)
+	for radii in (equal, unequal):
+		O.reset()
+		material(O)
+		swarm(O, radii=radii)
+		engines(O, ratcheting=True)
+		run(O)
+		ours = stateOf(O)
+		O.reset()
+		difference = relative(ours, cohesive(O, radii))
+		if radii == equal:
+			assert difference < 1e-10
+		else:
+			assert difference > 1e-3
+
+
+def test_coefficientsWhereTheLawsDiffer(O):
+	"""Radii 1 and 3: kn pi E*/4 R1 against YADE's 2 E R1 R2/(R1+R2), with E = pi E*/2 the same for equal radii."""
+	material(O)
+	a, b = pair(O, RADIUS, 3 * RADIUS, 1e-6)
+	engines(O)
+	O.dt = 1e-9
+	O.step()
+	phys = O.interactions[a, b].phys
+	assert phys.kn == pytest.approx(math.pi * EMOD * RADIUS / 4, rel=1e-12)
+	young = O.materials[0].young
+	assert young == pytest.approx(0.5 * math.pi * EMOD, rel=1e-15) and O.materials[0].poisson == 1 / KRATIO
+	stock = 2 * young * RADIUS * 3 * RADIUS / (4 * RADIUS)
+	assert stock == pytest.approx(3 * phys.kn, rel=1e-12)
+	assert phys.kr == pytest.approx(phys.ks * (0.75 * RADIUS) ** 2, rel=1e-12) and phys.rollingArm == pytest.approx(ROLLING * 0.75 * RADIUS, rel=1e-12)
+
+
+def test_swappedIdsGiveTheSame(O):
+	"""The first and the second body of a contact have no meaning: bodies appended in reverse, the same motion but for the order of sums."""
+	material(O)
+	swarm(O)
+	engines(O)
+	run(O)
+	there = stateOf(O)
+	O.reset()
+	material(O)
+	places = swarm(O, keep=list(range(39, -1, -1)))
+	engines(O)
+	run(O)
+	assert relative(stateOf(O, places), there) < 1e-9  # rounding, grown in collisions
+
+
+def test_actionIsReaction(O):
+	"""No external force: momentum and angular momentum stay, with friction, rolling moments and platen-free contacts."""
+	material(O)
+	swarm(O)
+	engines(O)
+
+	def momenta():
+		bodies = [(b.state.mass, np.array(b.state.pos), np.array(b.state.vel), b.state.inertia[0] * np.array(b.state.angVel)) for b in O.bodies]
+		return sum(m * v for m, _, v, _ in bodies), sum(m * np.cross(x, v) + s for m, x, v, s in bodies)
+
+	linear, angular = momenta()
+	run(O)
+	for now, before, scale in zip(momenta(), (linear, angular), (4e-4, 4e-7)):
+		assert np.abs(now - before).max() < 1e-11 * scale
+		assert scale > np.linalg.norm(before)
+
+
+def test_platenTorqueIsThatOfTheForceAtThePoint(O):
+	material(O)
+	plate = floor(O)
+	ball = O.bodies.append(utils.sphere((0.3, 0, 0.99 * RADIUS), RADIUS, fixed=True))
+	O.bodies[ball].state.vel = (0, 0.1, 0)
+	engines(O)
+	run(O, 20)
+	pushed = np.array(O.forces.f(ball, sync=True))
+	assert abs(pushed[1]) > 0 and np.all(np.array(O.forces.f(plate, sync=True)) == -pushed)
+	contact = O.interactions[plate, ball]
+	arm = np.array(contact.geom.contactPoint) - np.array(O.bodies[plate].state.pos)
+	assert apart(O.forces.t(plate, sync=True), np.cross(arm, -pushed)) < 1e-12 * np.linalg.norm(pushed)
+
+
+def test_savedAndLoadedMidRunIsTheSameRun(O, tmp_path):
+	material(O, cbTensile=1.0, cbShear=0.3)
+	swarm(O)
+	floor(O)
+	engines(O, bonds=True, damping=0.1, gravity=(0, 0, -9.81))
+	file = str(tmp_path / "half.yade.gz")
+	phys = untilContacts(O, lambda p: p.shearForce.norm() > 0 and not p.bonded and p.moment.norm() > 0)
+	assert any(p.bonded for p in phys) and law(O).shearBreaks > 0
+	O.save(file)
+	run(O, 1000)
+	whole = stateOf(O)
+	O.reset()
+	O.load(file)
+	run(O, 1000)
+	if O.numThreads == 1:
+		assert (stateOf(O) == whole).all()
+	else:
+		assert relative(stateOf(O), whole) < 1e-6
+
+
+#: damping of NewtonIntegrator, what changes in the material
+BALANCES = {
+	"friction": (0.0, dict(rollingFriction=0)),
+	"rolling": (0.0, dict()),
+	"rolling and damping": (0.2, dict()),
+	"bonds": (0.0, dict(cbTensile=0.05, cbShear=0.05)),
+}
+
+
+@pytest.mark.parametrize("case", BALANCES)
+def test_energyBalanceCloses(O, case):
+	"""kinetic + elastic + sliding + rolling + broken bonds + damping stays what it was: what is off comes from the step alone and goes with it."""
+	damping, changes = BALANCES[case]
+	drifts = []
+	for refine in (1, 4):
+		O.reset()
+		material(O, **changes)
+		swarm(O, spin=1000)
+		engines(O, damping=damping, bonds="cbShear" in changes)
+		O.trackEnergy = True
+		O.dt = DT / refine
+		O.step()
+		start = O.energy.total()
+		assert start == O.energy["kinetic"] > 0
+		O.run(STEPS * refine, True)
+		energy = dict(O.energy.items())
+		drifts.append(abs(O.energy.total() - start) / start)
+		O.trackEnergy = False
+		assert energy["plastDissip"] > 0.02 * start
+		assert (energy["rollDissip"] > 1e-3 * start) == ("rollingFriction" not in changes)
+		assert (energy["bondDissip"] > 1e-3 * start) == ("cbShear" in changes)
+		assert (energy.get("nonviscDamp", 0) > 0.02 * start) == (damping > 0)
+	# Measured: see pkg/contact/README.md.
+	print(case, drifts)
+	assert drifts[0] < 0.01 and drifts[1] < 0.4 * drifts[0]
+
+
+def test_energyIsTheContacts(O):
+	"""'elastPotential' = sum of (Fn^2/kn + Fs^2/ks + M^2/kr)/2 over the contacts."""
+	material(O)
+	swarm(O)
+	engines(O)
+	O.trackEnergy = True
+	phys = untilContacts(O, lambda p: p.shearForce.norm() > 0 and p.moment.norm() > 0)
+	O.trackEnergy = False
+	elastic = sum(0.5 * (p.normalForce.squaredNorm() / p.kn + p.shearForce.squaredNorm() / p.ks + p.moment.squaredNorm() / p.kr) for p in phys)
+	assert O.energy["elastPotential"] == pytest.approx(elastic, rel=1e-12)
