@@ -7,6 +7,7 @@
 #include <pkg/common/Sphere.hpp>
 
 #include <stdexcept>
+#include <tuple>
 
 namespace yade {
 

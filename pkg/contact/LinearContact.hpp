@@ -42,6 +42,7 @@ public:
 		young=poisson=frictionAngle=NaN;
 		,
 		.add_property("friction",&LinearMat::getFriction,&LinearMat::setFriction,"Friction coefficient $\\mu=\\tan$ frictionAngle [-], >= 0. The contact has the smaller one of its two bodies. Required.")
+		.def("requireComplete",&LinearMat::requireComplete,"Raises ValueError when stiffness or friction were not given. Of use before a run: the same error inside YADE's interaction loop ends the program.")
 	);
 	// clang-format on
 	REGISTER_CLASS_INDEX(LinearMat, FrictMat);
@@ -61,6 +62,11 @@ class LinearPhys : public RotStiffFrictPhys {
 public:
 	virtual ~LinearPhys() = default;
 	void bond(Real tensile, Real shear);
+	/// Nothing but a normal force: no friction, rolling resistance or bond, and nothing left of them (they can be switched off while a test runs).
+	bool normalOnly() const
+	{
+		return !(tangensOfFrictionAngle > 0) && !(rollingArm > 0) && !bonded && shearForce == Vector3r::Zero() && moment == Vector3r::Zero();
+	}
 	hexmembrane::ContactLaw law() const { return {kn, ks, tangensOfFrictionAngle, kr, rollingArm, tensileStrength, shearStrength}; }
 
 	// clang-format off

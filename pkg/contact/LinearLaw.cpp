@@ -11,10 +11,7 @@ bool Law2_ScGeom_LinearPhys_Linear::go(shared_ptr<IGeom>& geometry, shared_ptr<I
 {
 	const ScGeom& geom = static_cast<const ScGeom&>(*geometry);
 	LinearPhys& phys = static_cast<LinearPhys&>(*physics);
-	// Without friction, rolling resistance and bond, and with nothing left of them (they can be switched off while a test runs), only the normal force is there.
-	const bool normalOnly = !(phys.tangensOfFrictionAngle > 0) && !(phys.rollingArm > 0) && !phys.bonded && phys.shearForce == Vector3r::Zero()
-	        && phys.moment == Vector3r::Zero();
-	if (!normalOnly) return advance(geom, phys, *contact);
+	if (!phys.normalOnly()) return advance(geom, phys, *contact);
 	if (geom.penetrationDepth < 0) return false;
 	phys.normalForce = phys.kn * geom.penetrationDepth * geom.normal;
 	if (scene->trackEnergy) book({phys.kn * geom.penetrationDepth, false, hexmembrane::BondBreak::none, 0, 0, 0}, phys);

@@ -11,8 +11,8 @@
  * Signs: the unit normal n points from body 1 to body 2; overlap u > 0 in contact, < 0 across a gap; displacement, rotation and velocity are those of body 2
  * relative to body 1; normal force N (> 0 in compression), shear force and moment act on body 2, their opposites on body 1. SI units.
  *
- * Everything is first order in the step, as leapfrog integration is: what belongs to step i are positions x_i and velocities v_(i-1/2), whose product with dt is
- * the displacement from x_(i-1) to x_i. Forces that depend on a path are incremental; loads that a contact remembers turn with it by carried(). */
+ * Everything is first order in the step: what belongs to step i are positions x_i and velocities v_(i-1/2), whose product with dt is the displacement from
+ * x_(i-1) to x_i. Forces that depend on a path are incremental; loads that a contact remembers turn with it by carried(). */
 namespace hexmembrane {
 
 /// pi min(R1,R2)^2/(R1+R2) (m): area over length of PFC's deformability method, kn = E* shape, for two spheres.
@@ -147,8 +147,8 @@ inline BondBreak bondBreak(const ContactLaw& law, double normal, const Vec3& she
 	return shear.squaredNorm() > law.shearStrength * law.shearStrength ? BondBreak::shear : BondBreak::none;
 }
 
-/// Step of a bonded contact: N = kn u of either sign, shear elastic without slip, no moment (what rolling left from before is let go). A break in tension takes all forces; one in shear leaves them in
-/// compression, as far as friction holds (from then on the contact is an unbonded one), and takes them in tension.
+/// Step of a bonded contact: N = kn u of either sign, shear elastic without slip, no moment (what rolling left from before is let go). A break in tension takes
+/// all forces; one in shear leaves them in compression, as far as friction holds (from then on the contact is an unbonded one), and takes them in tension.
 inline ContactStep advanceBond(const ContactLaw& law, const ContactMotion& motion, Vec3& shear, Vec3& moment, bool& bonded)
 {
 	ContactStep step{law.kn * motion.overlap, false, BondBreak::none, 0, 0, 0};

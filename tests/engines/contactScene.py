@@ -12,6 +12,7 @@ from yade import (
 	Bo1_Sphere_Aabb,
 	ForceResetter,
 	Ig2_Platen_Sphere_ScGeom,
+	Ig2_Sphere_Sphere_LinearScGeom,
 	Ig2_Sphere_Sphere_ScGeom,
 	InsertionSortCollider,
 	InteractionLoop,
@@ -33,13 +34,14 @@ def material(O, **changes):
 	return O.materials[-1]
 
 
-def engines(O, gravity=(0, 0, 0), damping=0.0, ratcheting=False, bonds=False, verlet=0.05):
-	"""YADE's usual loop with our law. `ratcheting`: the shear increment as PFC has it, the true one at the contact point, is the False."""
+def engines(O, gravity=(0, 0, 0), damping=0.0, ratcheting=False, bonds=False, verlet=0.05, stock=False):
+	"""YADE's usual loop with our law. `ratcheting`: False is the shear increment as PFC has it, the true one at the contact point. `stock`: YADE's Ig2."""
+	spheres = Ig2_Sphere_Sphere_ScGeom if stock else Ig2_Sphere_Sphere_LinearScGeom
 	O.engines = [
 		ForceResetter(),
 		InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Platen_Aabb()], verletDist=-verlet),
 		InteractionLoop(
-			[Ig2_Sphere_Sphere_ScGeom(avoidGranularRatcheting=ratcheting), Ig2_Platen_Sphere_ScGeom()],
+			[spheres(avoidGranularRatcheting=ratcheting), Ig2_Platen_Sphere_ScGeom()],
 			[Ip2_LinearMat_LinearMat_LinearPhys(bondNewContacts=bonds)],
 			[Law2_ScGeom_LinearPhys_Linear()],
 		),

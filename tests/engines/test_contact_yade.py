@@ -50,10 +50,10 @@ def test_helperSeesDifferences():
 	assert not relative(b, a) < 1
 
 
-def collide(O, **changes):
+def collide(O, stock=False, **changes):
 	material(O, **changes)
 	swarm(O)
-	engines(O, ratcheting=True)
+	engines(O, ratcheting=True, stock=stock)
 	run(O)
 	return stateOf(O)
 
@@ -78,6 +78,27 @@ def test_linearAsCundallStrack(O):
 	# and it is sensitive: rolling resistance changes it
 	O.reset()
 	assert relative(collide(O), ours) > 1e-3
+
+
+@pytest.mark.parametrize("changes", (dict(), dict(friction=0, rollingFriction=0)))
+def test_ourGeometryIsYades(O, changes):
+	"""The lean Ig2 against YADE's: the same motion to the last bit, also where it leaves out what frictionless contacts do not need."""
+	ours = collide(O, **changes)
+	O.reset()
+	assert (collide(O, stock=True, **changes) == ours).all()
+
+
+def test_frictionlessContactsAreLean(O):
+	material(O, friction=0, rollingFriction=0)
+	a, b = pair(O, RADIUS, RADIUS, 1e-6, velocity=(0.01, 0, 0))
+	engines(O)
+	run(O, 5)
+	contact = O.interactions[a, b]
+	assert contact.geom.shearInc.norm() == 0 and contact.geom.penetrationDepth == pytest.approx(1e-6, rel=1e-3)
+	contact.phys.tangensOfFrictionAngle = 0.4
+	O.step()
+	assert contact.geom.shearInc[0] == pytest.approx(0.01 * DT, rel=1e-3)
+	assert contact.phys.shearForce[0] == pytest.approx(-contact.phys.ks * 0.01 * DT, rel=1e-3)
 
 
 def cohesive(O, radii):
