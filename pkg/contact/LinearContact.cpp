@@ -24,7 +24,8 @@ void requireStrength(const string& parameter, Real strength)
 
 void refuseBoth(const string& parameter, Real value)
 {
-	if (given(value)) hexmembrane::reject(parameter, value, "stiffness is given twice", "either kn and ks, or emod and kratio; take one back by setting it to nan");
+	if (given(value))
+		hexmembrane::reject(parameter, value, "stiffness is given twice", "either kn and ks, or emod and kratio; take one back by setting it to nan");
 }
 
 // young and poisson may be as they were, as they must be now, or not there; anything else was set by hand.
@@ -92,7 +93,8 @@ void LinearMat::pyHandleCustomCtorArgs(boost::python::tuple&, boost::python::dic
 void LinearMat::requireComplete() const
 {
 	if (!given(emod) && !given(kn)) hexmembrane::reject("LinearMat.kn", kn, "no stiffness is given", "give kn and ks, or emod and kratio");
-	if (given(emod)) hexmembrane::requirePositive("LinearMat.kratio", kratio, "1");
+	if (given(emod))
+		hexmembrane::requirePositive("LinearMat.kratio", kratio, "1");
 	else
 		hexmembrane::requireNonNegative("LinearMat.ks", ks, "N/m");
 	hexmembrane::requireNonNegative("LinearMat.friction", getFriction(), "1");
@@ -130,7 +132,8 @@ void bondByMaterial(LinearPhys& phys, const LinearMat& a, const LinearMat& b)
 
 } // namespace
 
-void Ip2_LinearMat_LinearMat_LinearPhys::go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2, const shared_ptr<Interaction>& contact)
+void Ip2_LinearMat_LinearMat_LinearPhys::go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2,
+                                            const shared_ptr<Interaction>& contact)
 {
 	if (contact->phys) return;
 	const LinearMat &a = static_cast<const LinearMat&>(*material1), &b = static_cast<const LinearMat&>(*material2);
@@ -138,8 +141,8 @@ void Ip2_LinearMat_LinearMat_LinearPhys::go(const shared_ptr<Material>& material
 	b.requireComplete();
 	const Real r1 = sphereRadius(*Body::byId(contact->getId1(), scene)), r2 = sphereRadius(*Body::byId(contact->getId2(), scene));
 	if (!given(r1) && !given(r2))
-		throw std::runtime_error("Ip2_LinearMat_LinearMat_LinearPhys: neither #" + std::to_string(contact->getId1()) + " nor #" + std::to_string(contact->getId2())
-		                         + " is a Sphere; fix: use these contacts for spheres and for spheres on boundaries");
+		throw std::runtime_error("Ip2_LinearMat_LinearMat_LinearPhys: neither #" + std::to_string(contact->getId1()) + " nor #" +
+		                         std::to_string(contact->getId2()) + " is a Sphere; fix: use these contacts for spheres and for spheres on boundaries");
 
 	auto phys = boost::make_shared<LinearPhys>();
 	phys->spheres = given(r1) && given(r2);

@@ -46,13 +46,13 @@ inline Springs inSeries(const Springs& a, const Springs& b)
 
 /// Parameters of a contact. Nothing is checked: who makes contacts checks.
 struct ContactLaw {
-	double kn;               ///< normal stiffness (N/m), > 0
-	double ks;               ///< shear stiffness (N/m), >= 0
-	double friction;         ///< coefficient mu (-), >= 0
-	double kr;               ///< rolling stiffness (N m/rad), >= 0; PFC: ks Rbar^2
-	double rollingArm;       ///< mu_r Rbar (m), >= 0: limit of the moment over the normal force
-	double tensileStrength;  ///< of a bond (N), >= 0 or infinite; PFC: cb_tenf
-	double shearStrength;    ///< of a bond (N), >= 0 or infinite; PFC: cb_shearf
+	double kn;              ///< normal stiffness (N/m), > 0
+	double ks;              ///< shear stiffness (N/m), >= 0
+	double friction;        ///< coefficient mu (-), >= 0
+	double kr;              ///< rolling stiffness (N m/rad), >= 0; PFC: ks Rbar^2
+	double rollingArm;      ///< mu_r Rbar (m), >= 0: limit of the moment over the normal force
+	double tensileStrength; ///< of a bond (N), >= 0 or infinite; PFC: cb_tenf
+	double shearStrength;   ///< of a bond (N), >= 0 or infinite; PFC: cb_shearf
 };
 
 /// How the two bodies of a contact moved.
@@ -105,10 +105,7 @@ inline Vec3 carried(const Vec3& load, const ContactTurn& turn)
 
 /// Work that a spring of this stiffness loses when its trial load is cut down to `kept` while the load was `before` at the start of the step:
 /// (before+kept)/2 . (trial-kept)/stiffness, which is the work done on it by the trapezoid rule less its gain in elastic energy. PFC's definition.
-inline double cutWork(const Vec3& before, const Vec3& trial, const Vec3& kept, double stiffness)
-{
-	return 0.5 * (before + kept).dot(trial - kept) / stiffness;
-}
+inline double cutWork(const Vec3& before, const Vec3& trial, const Vec3& kept, double stiffness) { return 0.5 * (before + kept).dot(trial - kept) / stiffness; }
 
 /// v, or v shortened to the length `limit` when it is longer.
 inline Vec3 cutTo(const Vec3& v, double limit)
