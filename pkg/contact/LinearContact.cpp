@@ -6,6 +6,8 @@
 #include <kernels/Check.hpp>
 #include <pkg/common/Sphere.hpp>
 
+#include <boost/make_shared.hpp>
+
 #include <stdexcept>
 #include <tuple>
 

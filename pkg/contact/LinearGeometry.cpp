@@ -6,6 +6,8 @@
 #include <core/Scene.hpp>
 #include <pkg/common/Sphere.hpp>
 
+#include <boost/make_shared.hpp>
+
 #include <typeinfo>
 
 namespace yade {
