@@ -32,7 +32,7 @@ bool innerFromName(const string& surface)
 
 hexmembrane::HexLatticeSpec HexMembrane::spec() const
 {
-	return { specimenRadius, specimenHeight, particleRadius, hexmembrane::placementFromName(placement), oRingRows, platenRows };
+	return {specimenRadius, specimenHeight, particleRadius, hexmembrane::placementFromName(placement), oRingRows, platenRows};
 }
 
 void HexMembrane::checkGrain(Real radius) const
@@ -42,7 +42,7 @@ void HexMembrane::checkGrain(Real radius) const
 	const Real largest = hexmembrane::largestMembraneRadius(smallestGrain);
 	if (radius <= largest) return;
 	const string wrong = "too coarse for grains of radius " + hexmembrane::formatNumber(smallestGrain) + " m, they pass between three spheres (Eq. 1)";
-	const string fix   = "at most " + hexmembrane::formatNumber(largest) + " m, or allowCoarse=True";
+	const string fix = "at most " + hexmembrane::formatNumber(largest) + " m, or allowCoarse=True";
 	if (!allowCoarse) hexmembrane::reject("HexMembrane.particleRadius", radius, wrong, fix);
 	LOG_WARN("HexMembrane.particleRadius = " << radius << ": " << wrong << "; allowed by allowCoarse (limit " << largest << " m)");
 }
@@ -50,11 +50,11 @@ void HexMembrane::checkGrain(Real radius) const
 vector<Body::id_t> HexMembrane::generate()
 {
 	if (!ids.empty())
-		hexmembrane::reject("HexMembrane.ids", static_cast<int>(ids.size()), "the membrane has been generated already", "make a new HexMembrane for a second one");
+		hexmembrane::reject("HexMembrane.ids", static_cast<int>(ids.size()), "the membrane has been generated already",
+		                    "make a new HexMembrane for a second one");
 	const hexmembrane::HexLattice lattice = hexmembrane::makeHexLattice(spec());
 	checkGrain(lattice.sphereRadius);
-	for (int a = 0; a < 3; ++a)
-		hexmembrane::requireFinite("HexMembrane.origin", origin[a], "m");
+	for (int a = 0; a < 3; ++a) hexmembrane::requireFinite("HexMembrane.origin", origin[a], "m");
 	const shared_ptr<Scene>& scene = Omega::instance().getScene();
 	if (!material) {
 		if (scene->materials.empty())
@@ -68,27 +68,28 @@ vector<Body::id_t> HexMembrane::generate()
 	const Real r = lattice.sphereRadius, mass = rho * 4. / 3 * M_PI * r * r * r;
 	for (int p = 0; p < lattice.particles(); ++p) {
 		shared_ptr<Sphere> sphere(new Sphere);
-		sphere->radius   = r;
-		sphere->color    = color;
+		sphere->radius = r;
+		sphere->color = color;
 		shared_ptr<Body> particle(new Body);
-		particle->shape  = sphere;
-		particle->material       = material;
-		particle->groupMask      = mask;
-		particle->state          = material->newAssocState();
-		particle->state->pos     = particle->state->refPos = origin + lattice.positions[p];
-		particle->state->mass    = mass;
+		particle->shape = sphere;
+		particle->material = material;
+		particle->groupMask = mask;
+		particle->state = material->newAssocState();
+		particle->state->pos = particle->state->refPos = origin + lattice.positions[p];
+		particle->state->mass = mass;
 		particle->state->inertia = Vector3r::Constant(.4 * mass * r * r);
-		if (lattice.groups[p] == 1) particle->state->blockedDOFs = State::DOF_ALL;
+		if (lattice.groups[p] == 1)
+			particle->state->blockedDOFs = State::DOF_ALL;
 		else if (!rotations)
 			particle->state->blockedDOFs = State::DOF_RXRYRZ;
 		ids.push_back(scene->bodies->insert(particle));
 	}
-	perRing      = lattice.perRing;
-	rings        = lattice.rings;
+	perRing = lattice.perRing;
+	rings = lattice.rings;
 	sphereRadius = r;
 	centreRadius = lattice.centreRadius;
-	innerRadius  = lattice.innerRadius;
-	ringSpacing  = lattice.ringSpacing;
+	innerRadius = lattice.innerRadius;
+	ringSpacing = lattice.ringSpacing;
 	return ids;
 }
 
@@ -107,9 +108,8 @@ const shared_ptr<Body>& HexMembrane::body(const Scene& scene, int index, const s
 {
 	const Body::id_t id = ids[index];
 	if (id >= static_cast<Body::id_t>(scene.bodies->size()) || !(*scene.bodies)[id])
-		throw std::runtime_error(
-		        who + ": body " + std::to_string(id) + " of the membrane is gone (iteration " + std::to_string(scene.iter)
-		        + "); fix: do not erase membrane bodies, or load the last checkpoint");
+		throw std::runtime_error(who + ": body " + std::to_string(id) + " of the membrane is gone (iteration " + std::to_string(scene.iter) +
+		                         "); fix: do not erase membrane bodies, or load the last checkpoint");
 	return (*scene.bodies)[id];
 }
 
@@ -117,13 +117,14 @@ void HexMembrane::gather(const Scene& scene, const string& who, vector<Vector3r>
 {
 	requireGenerated(who);
 	x.resize(ids.size());
-	const int count   = static_cast<int>(ids.size());
-	int       missing = -1;
+	const int count = static_cast<int>(ids.size());
+	int missing = -1;
 #pragma omp parallel for schedule(static)
 	for (int i = 0; i < count; ++i) {
 		const Body::id_t id = ids[i];
-		const Body*      b  = id < static_cast<Body::id_t>(scene.bodies->size()) ? (*scene.bodies)[id].get() : nullptr;
-		if (b) x[i] = b->state->pos;
+		const Body* b = id < static_cast<Body::id_t>(scene.bodies->size()) ? (*scene.bodies)[id].get() : nullptr;
+		if (b)
+			x[i] = b->state->pos;
 		else
 #pragma omp critical
 			missing = i;
@@ -134,10 +135,9 @@ void HexMembrane::gather(const Scene& scene, const string& who, vector<Vector3r>
 vector<std::array<int, 3>> HexMembrane::triangleList() const
 {
 	vector<std::array<int, 3>> list;
-	const auto                 tube = stencil();
+	const auto tube = stencil();
 	list.reserve(2 * perRing * (rings - 1));
-	for (int k = 0; k + 1 < rings; ++k)
-		hexmembrane::appendTriangles(tube, k, list);
+	for (int k = 0; k + 1 < rings; ++k) hexmembrane::appendTriangles(tube, k, list);
 	return list;
 }
 
@@ -145,8 +145,7 @@ vector<int> HexMembrane::groups_get() const
 {
 	requireGenerated("HexMembrane.groups");
 	vector<int> g;
-	for (int k = 0; k < rings; ++k)
-		g.insert(g.end(), perRing, groupOfRing(k));
+	for (int k = 0; k < rings; ++k) g.insert(g.end(), perRing, groupOfRing(k));
 	return g;
 }
 
@@ -154,8 +153,7 @@ vector<Vector3i> HexMembrane::triangles_get() const
 {
 	requireGenerated("HexMembrane.triangles");
 	vector<Vector3i> out;
-	for (const auto& t : triangleList())
-		out.emplace_back(t[0], t[1], t[2]);
+	for (const auto& t : triangleList()) out.emplace_back(t[0], t[1], t[2]);
 	return out;
 }
 
@@ -163,8 +161,7 @@ vector<Vector2i> HexMembrane::bonds_get() const
 {
 	requireGenerated("HexMembrane.bonds");
 	vector<Vector2i> out;
-	for (const auto& b : hexmembrane::bondList(stencil()))
-		out.emplace_back(b[0], b[1]);
+	for (const auto& b : hexmembrane::bondList(stencil())) out.emplace_back(b[0], b[1]);
 	return out;
 }
 
@@ -180,11 +177,10 @@ vector<Vector3r> HexMembrane::surfacePoints(const string& surface) const
 	vector<Vector3r> x = positions_get();
 	if (!innerFromName(surface)) return x;
 	hexmembrane::PressureForce mesh(hexmembrane::TriangleMesh(static_cast<int>(x.size()), triangleList()), 0.);
-	vector<Vector3r>           unused, normals;
+	vector<Vector3r> unused, normals;
 	mesh.compute(0., x, unused);
 	mesh.vertexNormals(normals);
-	for (size_t i = 0; i < x.size(); ++i)
-		x[i] -= sphereRadius * normals[i];
+	for (size_t i = 0; i < x.size(); ++i) x[i] -= sphereRadius * normals[i];
 	return x;
 }
 
@@ -202,10 +198,10 @@ Real HexMembrane::enclosedVolume(Real zBottom, Real zTop, const string& surface)
 
 Real HexMembrane::meanRadius(Real zBottom, Real zTop, const string& surface) const
 {
-	const bool       inner = innerFromName(surface);
-	vector<Vector3r> x     = positions_get();
-	Real             sum   = 0;
-	int              count = 0;
+	const bool inner = innerFromName(surface);
+	vector<Vector3r> x = positions_get();
+	Real sum = 0;
+	int count = 0;
 	for (int k = 0; k < rings; ++k) {
 		const auto shape = hexmembrane::ringShape(stencil(), x, k);
 		if (shape.centre[2] < zBottom || shape.centre[2] > zTop) continue; // false for NaN
@@ -213,8 +209,8 @@ Real HexMembrane::meanRadius(Real zBottom, Real zTop, const string& surface) con
 		++count;
 	}
 	if (count == 0)
-		throw std::runtime_error("HexMembrane.meanRadius: no ring between zBottom = " + hexmembrane::formatNumber(zBottom) + " and zTop = "
-		                         + hexmembrane::formatNumber(zTop) + " m; fix: give the heights of the platens' faces");
+		throw std::runtime_error("HexMembrane.meanRadius: no ring between zBottom = " + hexmembrane::formatNumber(zBottom) +
+		                         " and zTop = " + hexmembrane::formatNumber(zTop) + " m; fix: give the heights of the platens' faces");
 	return sum / count - (inner ? sphereRadius : 0.);
 }
 
@@ -222,11 +218,11 @@ Real HexMembrane::transmittedPressure(int group) const
 {
 	if (group != 0 && group != 2 && group != 3)
 		hexmembrane::reject("HexMembrane.transmittedPressure: group", group, "no pressure is transmitted there", "0 (groups 2 and 3), 2 or 3");
-	const Scene&           scene = currentScene();
-	const vector<Vector3r> x     = positions_get();
+	const Scene& scene = currentScene();
+	const vector<Vector3r> x = positions_get();
 
 	const std::set<Body::id_t> own(ids.begin(), ids.end());
-	Real                       force = 0, area = 0;
+	Real force = 0, area = 0;
 	for (int k = 0; k < rings; ++k) {
 		const int g = groupOfRing(k);
 		if (g == 1 || (group != 0 && g != group)) continue;
@@ -246,8 +242,8 @@ Real HexMembrane::transmittedPressure(int group) const
 		}
 	}
 	if (area <= 0)
-		throw std::runtime_error(
-		        "HexMembrane.transmittedPressure: group " + std::to_string(group) + " has no area; fix: platenRows > 0 when the membrane is generated");
+		throw std::runtime_error("HexMembrane.transmittedPressure: group " + std::to_string(group) +
+		                         " has no area; fix: platenRows > 0 when the membrane is generated");
 	return force / area;
 }
 

@@ -19,7 +19,7 @@ public:
 	//! Throws unless generate() has run; `who` asks.
 	void requireGenerated(const string& who) const;
 	//! Connectivity for the kernels.
-	hexmembrane::HexStencil stencil() const { return { perRing, rings }; }
+	hexmembrane::HexStencil stencil() const { return {perRing, rings}; }
 	//! Group (1, 2 or 3) of ring k.
 	int groupOfRing(int k) const;
 
@@ -34,17 +34,17 @@ public:
 	Real transmittedPressure(int group) const;
 
 	// Python-facing
-	vector<int>      groups_get() const;
+	vector<int> groups_get() const;
 	vector<Vector3i> triangles_get() const;
 	vector<Vector2i> bonds_get() const;
 	vector<Vector3r> positions_get() const;
-	Real             surfaceArea(const string& surface, Real zBottom, Real zTop) const;
-	Real             enclosedVolume(Real zBottom, Real zTop, const string& surface) const;
-	Real             meanRadius(Real zBottom, Real zTop, const string& surface) const;
+	Real surfaceArea(const string& surface, Real zBottom, Real zTop) const;
+	Real enclosedVolume(Real zBottom, Real zTop, const string& surface) const;
+	Real meanRadius(Real zBottom, Real zTop, const string& surface) const;
 
 private:
 	hexmembrane::HexLatticeSpec spec() const;
-	void                        checkGrain(Real sphereRadius) const;
+	void checkGrain(Real sphereRadius) const;
 	//! Centres, or the points one radius further in along the vertex normals.
 	vector<Vector3r> surfacePoints(const string& surface) const;
 
