@@ -53,15 +53,16 @@ buildPlugin() {
 	fi
 	mkdir -p "$buildDir" || die "$checkout is not writable: there is no place for the build."
 	log=$buildDir/configure.log
-	if [[ ! -f $buildDir/build.ninja || $(cat "$stamp" 2>/dev/null) != "$hostId" ]]; then
+	if [[ ! -f $buildDir/build.ninja || $(cat "$stamp" 2>/dev/null) != "$hostId $checkout" ]]; then
 		say "configuring the build ($hostId)"
 		find "$buildDir" -mindepth 1 -delete
+		echo unfinished >"$stamp"
 		"${entry[@]}" cmake -S "$checkout" -B "$buildDir" -G Ninja -DCMAKE_BUILD_TYPE=Release -DYADE_EXECUTABLE=/usr/bin/yade-double \
 			-DYADE_SOURCE_DIR="$yadeSource" >"$log" 2>&1 || {
 			cat "$log" >&2
 			die "cmake failed (see above)."
 		}
-		echo "$hostId" >"$stamp"
+		echo "$hostId $checkout" >"$stamp"
 	fi
 	# A unit of the plugin takes up to 3.2 GB to compile.
 	memoryGb=$(awk '/^MemTotal:/ { print int($2 / 3.2e6) }' /proc/meminfo)
