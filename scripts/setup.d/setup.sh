@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# prepare: does whatever set-up is still missing and builds the plugin. Afterwards the array `entry` holds the words before a
-# command that is to run beside YADE, and `build` is up to date.
+# prepare [TARGET...]: does whatever set-up is still missing and builds (hexmembrane: the plugin alone; by default the tests and
+# benchmarks too). Afterwards the array `entry` holds the words before a command that is to run beside YADE.
 set -euo pipefail
 # shellcheck source=/dev/null
 for _part in common apt root native; do . "$(dirname "${BASH_SOURCE[0]}")/$_part.sh"; done
@@ -43,7 +43,8 @@ chooseHost() {
 	entry+=(HEXMEMBRANE_BUILD="$buildDir")
 }
 
-# The plugin, the kernels' tests and benchmarks, in build/. ninja itself finds out what is out of date.
+# buildPlugin TARGET...: what is named of the build (everything: plugin, kernels' tests and benchmarks), in build/. ninja itself finds
+# out what is out of date.
 buildPlugin() {
 	local stamp=$buildDir/.host jobs memoryGb log
 	lock 8 "build-$(printf '%s' "$checkout" | sha256sum | cut -c 1-12)"
@@ -68,7 +69,7 @@ buildPlugin() {
 	memoryGb=$(awk '/^MemTotal:/ { print int($2 / 3.2e6) }' /proc/meminfo)
 	jobs=$(processors)
 	((memoryGb >= jobs)) || jobs=$((memoryGb > 0 ? memoryGb : 1))
-	"${entry[@]}" ninja -C "$buildDir" -j "$jobs" | tellBuild || die "the build failed (see above)."
+	"${entry[@]}" ninja -C "$buildDir" -j "$jobs" "$@" | tellBuild || die "the build failed (see above)."
 	exec 8>&-
 }
 
@@ -92,7 +93,7 @@ tellBuild() {
 
 prepare() {
 	chooseHost
-	buildPlugin
+	buildPlugin "$@"
 }
 
 # runBeside COMMAND...: runs COMMAND beside YADE as the last thing of this script, with its exit code. Signals must reach COMMAND, which
