@@ -62,12 +62,13 @@ void MembraneBonds::gatherRing(int k, vector<int>& missing)
 	const bool rotating = built.ks > 0;
 	const auto& bodies = *scene->bodies;
 	for (int i = 0; i < n; ++i) {
+		prefetchAhead(bodies, membrane->ids, k * n + i);
 		const Body* b = livingBody(bodies, membrane->ids[k * n + i]);
 		if (!b) {
 			missing[k] = k * n + i;
 			return;
 		}
-		kernel->position.set(k, i, b->state->pos);
+		kernel->position.set(k, i, b->state->se3.position);
 		if (!rotating) continue;
 		kernel->velocity.set(k, i, b->state->vel);
 		kernel->spin.set(k, i, b->state->angVel);

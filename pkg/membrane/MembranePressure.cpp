@@ -3,7 +3,6 @@
 
 #include "Scatter.hpp"
 #include "kernels/Check.hpp"
-#include "kernels/WorkMeter.hpp"
 
 namespace yade {
 
@@ -71,9 +70,10 @@ void MembranePressure::action()
 	positions.resize(count);
 #pragma omp parallel for schedule(static) reduction(max : missing)
 	for (int i = 0; i < count; ++i) {
+		prefetchAhead(bodies, vertexIds, i);
 		const Body* b = livingBody(bodies, vertexIds[i]);
 		if (b)
-			positions[i] = b->state->pos;
+			positions[i] = b->state->se3.position;
 		else
 			missing = std::max(missing, i);
 	}
@@ -83,22 +83,23 @@ void MembranePressure::action()
 
 	kernel.compute(pressure, positions, force);
 
+	// forces out, and the work since the last step by the trapezoidal rule, in one sweep
 	const int loadedCount = static_cast<int>(loaded.size());
-	loadedX.resize(loadedCount);
-	loadedForce.resize(loadedCount);
-#pragma omp parallel for schedule(static) reduction(max : bad)
+	const bool continued = static_cast<int>(lastForces.size()) == loadedCount && static_cast<int>(lastPositions.size()) == loadedCount;
+	lastForces.resize(loadedCount, Vector3r::Zero());
+	lastPositions.resize(loadedCount, Vector3r::Zero());
+	Real done = 0;
+#pragma omp parallel for schedule(static) reduction(max : bad) reduction(+ : done)
 	for (int l = 0; l < loadedCount; ++l) {
 		const int v = loaded[l];
-		loadedForce[l] = force[v];
-		loadedX[l] = positions[v];
 		if (!isFinite(force[v])) bad = std::max(bad, v);
 		scene->forces.addForce(vertexIds[v], force[v]);
+		done += 0.5 * (lastForces[l] + force[v]).dot(positions[v] - lastPositions[l]);
+		lastForces[l] = force[v];
+		lastPositions[l] = positions[v];
 	}
 	if (bad >= 0) throwNotFinite("MembranePressure: force", vertexIds[bad], *scene);
-
-	work += hexmembrane::trapezoidalWork(lastForces, lastPositions, loadedForce, loadedX);
-	lastForces.swap(loadedForce);
-	lastPositions.swap(loadedX);
+	if (continued) work += done;
 	if (scene->trackEnergy) scene->energy->add(-work, "pressureWork", energyIndex, /*reset*/ true);
 }
 

@@ -26,10 +26,9 @@ private:
 
 	// Caches, rebuilt from the attributes
 	hexmembrane::PressureForce kernel;
-	vector<Body::id_t> vertexIds;          //!< bodies that are the vertices of the mesh
-	vector<int> loaded;                    //!< vertices that receive their force
-	vector<Vector3r> positions, force;     //!< of all vertices
-	vector<Vector3r> loadedX, loadedForce; //!< of the loaded ones
+	vector<Body::id_t> vertexIds;      //!< bodies that are the vertices of the mesh
+	vector<int> loaded;                //!< vertices that receive their force
+	vector<Vector3r> positions, force; //!< of all vertices
 	const HexMembrane* builtFor = nullptr;
 	string builtSurface;
 	vector<Body::id_t> builtIds;

@@ -30,7 +30,7 @@ from yade import (
 )
 from yade.wrapper import HexMembrane, MembraneBonds, MembranePressure
 
-WARM, STEPS, TURNS = 200, 200, 7
+WARM, STEPS, TURNS = 100, 150, 5
 
 
 def membrane(material, radius):
