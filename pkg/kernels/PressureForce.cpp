@@ -37,26 +37,18 @@ void TriangleMesh::areaVectors(const std::vector<Vec3>& x, std::vector<Vec3>& ou
 	}
 }
 
-namespace {
-
-template <typename Value>
-void sumRound(const std::vector<int>& start, const std::vector<int>& around, const std::vector<Value>& in, std::vector<Value>& out, const Value& zero)
+void TriangleMesh::sumAtVertices(const std::vector<Vec3>& in, std::vector<Vec3>& out) const
 {
-	const long count = static_cast<long>(start.size()) - 1;
-	out.resize(count);
-#pragma omp parallel for schedule(static)
-	for (long v = 0; v < count; ++v) {
-		Value sum = zero;
-		for (int e = start[v]; e < start[v + 1]; ++e) sum += in[around[e]];
-		out[v] = sum;
-	}
+	out.resize(vertexCount());
+	forEachVertexSum(in, [&](long v, const Vec3& sum) { out[v] = sum; });
 }
 
-} // namespace
-
-void TriangleMesh::sumAtVertices(const std::vector<Vec3>& in, std::vector<Vec3>& out) const { sumRound<Vec3>(start, around, in, out, Vec3::Zero()); }
-
-void TriangleMesh::sumAtVertices(const std::vector<double>& in, std::vector<double>& out) const { sumRound<double>(start, around, in, out, 0.); }
+void TriangleMesh::sumAtVertices(const std::vector<double>& in, std::vector<double>& out) const
+{
+	out.assign(vertexCount(), 0.);
+	for (int v = 0; v < vertexCount(); ++v)
+		for (int e = start[v]; e < start[v + 1]; ++e) out[v] += in[around[e]];
+}
 
 void normaliseAll(std::vector<Vec3>& vectors)
 {
@@ -77,19 +69,18 @@ void PressureForce::compute(double pressure, const std::vector<Vec3>& x, std::ve
 {
 	mesh.areaVectors(x, twiceArea);
 	if (offset > 0) {
-		mesh.sumAtVertices(twiceArea, normals);
-		normaliseAll(normals);
-		const long count = static_cast<long>(x.size());
-		inner.resize(count);
-#pragma omp parallel for schedule(static)
-		for (long i = 0; i < count; ++i) inner[i] = x[i] - offset * normals[i];
+		normals.resize(x.size());
+		inner.resize(x.size());
+		mesh.forEachVertexSum(twiceArea, [&](long v, const Vec3& sum) {
+			const double length = sum.norm();
+			normals[v] = length > 0 ? Vec3(sum / length) : Vec3::Zero();
+			inner[v] = x[v] - offset * normals[v];
+		});
 		mesh.areaVectors(inner, twiceArea);
 	}
-	mesh.sumAtVertices(twiceArea, force);
 	const double factor = -pressure / 6;
-	const long count = static_cast<long>(force.size());
-#pragma omp parallel for schedule(static)
-	for (long i = 0; i < count; ++i) force[i] *= factor;
+	force.resize(x.size());
+	mesh.forEachVertexSum(twiceArea, [&](long v, const Vec3& sum) { force[v] = factor * sum; });
 }
 
 void PressureForce::vertexAreas(std::vector<double>& out) const

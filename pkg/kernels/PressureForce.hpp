@@ -22,6 +22,18 @@ public:
 
 	/// Twice the area vector of each triangle, (b - a) x (c - a).
 	void areaVectors(const std::vector<Vec3>& x, std::vector<Vec3>& out) const;
+	/// Calls use(vertex, sum of `perTriangle` over the triangles round it) for every vertex, in parallel: what is done with a sum is done while it is at hand.
+	template <typename Use>
+	void forEachVertexSum(const std::vector<Vec3>& perTriangle, const Use& use) const
+	{
+		const long count = vertexCount();
+#pragma omp parallel for schedule(static)
+		for (long v = 0; v < count; ++v) {
+			Vec3 sum = Vec3::Zero();
+			for (int e = start[v]; e < start[v + 1]; ++e) sum += perTriangle[around[e]];
+			use(v, sum);
+		}
+	}
 	/// Sum over the triangles round each vertex.
 	void sumAtVertices(const std::vector<Vec3>& perTriangle, std::vector<Vec3>& out) const;
 	/// Sum of a number per triangle over the triangles round each vertex.
