@@ -166,21 +166,20 @@ void PlatenDrive::requireReached(Real newTarget)
 	     std::to_string(scene->iter) + "; fix: is there a specimen in its way? give a longer timeLimit, or a larger maxVelocity");
 }
 
-void PlatenDrive::action()
+void PlatenDrive::advance(const Vector3r& forceOnPlaten, const std::function<Real(const Vector3r&)>& contactStiffnessAlong)
 {
 	State& state = requirePlaten();
 	requireSettings();
 	const Vector3r unit = direction.normalized();
 	const Real newTarget = target(static_cast<const Platen&>(*Body::byId(platen, scene)->shape));
 
-	scene->forces.sync();
-	record(state, 0 - scene->forces.getForce(platen).dot(unit), unit); // 0 - x: no force is 0, not -0
+	record(state, 0 - forceOnPlaten.dot(unit), unit); // 0 - x: no force is 0, not -0
 	if (mode != phaseMode || newTarget != phaseTarget || direction != phaseDirection) beginPhase(newTarget, state, unit);
 
 	Real next = newTarget;
 	if (mode == "stress") {
 		requireReached(newTarget);
-		stiffness = sumStiffness(unit);
+		stiffness = contactStiffnessAlong(unit);
 		next = servoStep(state.vel.dot(unit));
 	} else {
 		settled = false;
@@ -192,6 +191,13 @@ void PlatenDrive::action()
 	state.blockedDOFs = State::DOF_ALL;
 	state.isDamped = false; // else NewtonIntegrator books a dissipation that does not take place
 	phaseTime += scene->dt;
+}
+
+void PlatenDrive::action()
+{
+	requirePlaten();
+	scene->forces.sync();
+	advance(scene->forces.getForce(platen), [this](const Vector3r& unit) { return sumStiffness(unit); });
 }
 
 } // namespace yade

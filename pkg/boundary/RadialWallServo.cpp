@@ -96,11 +96,18 @@ void RadialWallServo::requireReached(Real target)
 
 void RadialWallServo::action()
 {
+	requireWall();
+	Real force, sum;
+	measure(force, sum);
+	advance(force, sum);
+}
+
+void RadialWallServo::advance(Real force, Real contactStiffness)
+{
 	CylinderWall& shape = requireWall();
 	requireSettings();
+	stiffness = contactStiffness;
 	const Real area = 2 * Mathr::PI * shape.radius * specimenHeight();
-	Real force;
-	measure(force, stiffness);
 	radialStress = force / area;
 	if (!math::isnan(lastRadius)) {
 		const Real done = 0.5 * (lastForce + force) * (lastRadius - shape.radius);

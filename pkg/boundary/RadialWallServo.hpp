@@ -13,6 +13,9 @@ class RadialWallServo : public GlobalEngine {
 public:
 	void action() override;
 
+	//! A step with this sum of the normal forces on the wall and of the stiffnesses of its contacts: moves the radius.
+	void advance(Real force, Real contactStiffness);
+
 private:
 	CylinderWall& requireWall() const;
 	Real specimenHeight() const;

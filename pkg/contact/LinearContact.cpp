@@ -102,11 +102,7 @@ void LinearMat::requireComplete() const
 	hexmembrane::requireNonNegative("LinearMat.friction", getFriction(), "1");
 }
 
-hexmembrane::Springs LinearMat::springs(Real shape) const
-{
-	if (given(emod)) return hexmembrane::springsByModulus(emod, kratio, shape);
-	return {kn, ks};
-}
+hexmembrane::ContactMaterial LinearMat::contactMaterial() const { return {kn, ks, emod, kratio, getFriction(), rollingFriction}; }
 
 void LinearPhys::bond(Real tensile, Real shear)
 {
@@ -146,16 +142,11 @@ void Ip2_LinearMat_LinearMat_LinearPhys::go(const shared_ptr<Material>& material
 		throw std::runtime_error("Ip2_LinearMat_LinearMat_LinearPhys: neither #" + std::to_string(contact->getId1()) + " nor #" +
 		                         std::to_string(contact->getId2()) + " is a Sphere; fix: use these contacts for spheres and for spheres on boundaries");
 
+	const bool spheres = given(r1) && given(r2);
+	const hexmembrane::ContactMaterial ma = a.contactMaterial(), mb = b.contactMaterial();
+	const auto law = spheres ? hexmembrane::sphereLaw(ma, mb, r1, r2) : hexmembrane::boundaryLaw(ma, mb, given(r1) ? r1 : r2);
 	auto phys = boost::make_shared<LinearPhys>();
-	phys->spheres = given(r1) && given(r2);
-	const Real shape = phys->spheres ? hexmembrane::contactShape(r1, r2) : hexmembrane::contactShape(given(r1) ? r1 : r2);
-	const Real lever = phys->spheres ? hexmembrane::rollingRadius(r1, r2) : (given(r1) ? r1 : r2);
-	const auto springs = hexmembrane::inSeries(a.springs(shape), b.springs(shape));
-	phys->kn = springs.kn;
-	phys->ks = springs.ks;
-	phys->tangensOfFrictionAngle = math::min(a.getFriction(), b.getFriction());
-	phys->rollingArm = math::min(a.rollingFriction, b.rollingFriction) * lever;
-	phys->kr = phys->rollingArm > 0 ? phys->ks * lever * lever : 0;
+	phys->set(law, spheres);
 	if (bondNewContacts) bondByMaterial(*phys, a, b);
 	contact->phys = phys;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <core/Dispatching.hpp>
-#include <kernels/ContactLaw.hpp>
+#include <kernels/ContactMaterial.hpp>
 #include <pkg/common/ElastMat.hpp>
 #include <pkg/dem/FrictPhys.hpp>
 #include <pkg/dem/ScGeom.hpp>
@@ -13,8 +13,8 @@ class LinearMat : public FrictMat {
 public:
 	virtual ~LinearMat() = default;
 
-	/// The spring that a body of this material brings to a contact of this shape (m).
-	hexmembrane::Springs springs(Real shape) const;
+	/// What a body of this material brings to its contacts.
+	hexmembrane::ContactMaterial contactMaterial() const;
 	/// \throws std::invalid_argument when stiffness or friction were not given
 	void requireComplete() const;
 	void postLoad(LinearMat&);
@@ -62,6 +62,16 @@ class LinearPhys : public RotStiffFrictPhys {
 public:
 	virtual ~LinearPhys() = default;
 	void bond(Real tensile, Real shear);
+	/// Takes the parameters of an unbonded contact, of two spheres or of a sphere and a boundary.
+	void set(const hexmembrane::ContactLaw& law, bool ofSpheres)
+	{
+		kn = law.kn;
+		ks = law.ks;
+		tangensOfFrictionAngle = law.friction;
+		rollingArm = law.rollingArm;
+		kr = law.kr;
+		spheres = ofSpheres;
+	}
 	/// Nothing but a normal force: no friction, rolling resistance or bond, and nothing left of them (they can be switched off while a test runs).
 	bool normalOnly() const
 	{

@@ -15,18 +15,22 @@ AreaRule areaRuleFromName(const std::string& name)
 	reject("MembraneRadialServo.areaRule", "'" + name + "'", "unknown", "'tributary' or 'cube'");
 }
 
-RingShape ringShape(const HexStencil& tube, const std::vector<Vec3>& x, int k)
+namespace {
+
+/// Of ring k with particles at(i).
+template <typename At>
+RingShape shapeOf(int perRing, const At& at)
 {
-	const Vec3* first = x.data() + k * tube.perRing;
 	RingShape shape{Vec3::Zero(), 0};
-	for (int i = 0; i < tube.perRing; ++i) shape.centre += first[i];
-	shape.centre /= tube.perRing;
-	for (int i = 0; i < tube.perRing; ++i) shape.radius += (first[i] - shape.centre).head<2>().norm();
-	shape.radius /= tube.perRing;
+	for (int i = 0; i < perRing; ++i) shape.centre += at(i);
+	shape.centre /= perRing;
+	for (int i = 0; i < perRing; ++i) shape.radius += (at(i) - shape.centre).template head<2>().norm();
+	shape.radius /= perRing;
 	return shape;
 }
 
-double particleArea(const HexStencil& tube, const std::vector<Vec3>& x, int k, double sphereRadius, AreaRule rule)
+template <typename Positions>
+double areaOf(const HexStencil& tube, const Positions& x, int k, double sphereRadius, AreaRule rule)
 {
 	if (rule == AreaRule::cube) return 4 * sphereRadius * sphereRadius;
 	const int below = std::max(k - 1, 0), above = std::min(k + 1, tube.rings - 1);
@@ -34,6 +38,25 @@ double particleArea(const HexStencil& tube, const std::vector<Vec3>& x, int k, d
 	const double inner = ringShape(tube, x, k).radius - sphereRadius;
 	return std::abs(height) * 2 * M_PI * std::max(inner, 0.) / tube.perRing;
 }
+
+} // namespace
+
+RingShape ringShape(const HexStencil& tube, const std::vector<Vec3>& x, int k)
+{
+	return shapeOf(tube.perRing, [&](int i) { return x[k * tube.perRing + i]; });
+}
+
+RingShape ringShape(const HexStencil& tube, const RingField& x, int k)
+{
+	return shapeOf(tube.perRing, [&](int i) { return x.get(k, i); });
+}
+
+double particleArea(const HexStencil& tube, const std::vector<Vec3>& x, int k, double sphereRadius, AreaRule rule)
+{
+	return areaOf(tube, x, k, sphereRadius, rule);
+}
+
+double particleArea(const HexStencil& tube, const RingField& x, int k, double sphereRadius, AreaRule rule) { return areaOf(tube, x, k, sphereRadius, rule); }
 
 Vec3 towardAxis(const Vec3& x, const Vec3& centre)
 {

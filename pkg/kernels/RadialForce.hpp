@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "HexStencil.hpp"
+#include "RingField.hpp"
 #include "Vec3.hpp"
 
 #include <string>
@@ -26,9 +26,11 @@ struct RingShape {
 
 /// Shape of ring k of the tube with particle positions x.
 RingShape ringShape(const HexStencil& tube, const std::vector<Vec3>& x, int k);
+RingShape ringShape(const HexStencil& tube, const RingField& x, int k);
 
 /// Area (m2) of one particle of ring k by the rule. \param sphereRadius R (m)
 double particleArea(const HexStencil& tube, const std::vector<Vec3>& x, int k, double sphereRadius, AreaRule rule);
+double particleArea(const HexStencil& tube, const RingField& x, int k, double sphereRadius, AreaRule rule);
 
 /// Unit vector from x to the vertical axis through `centre`; zero on the axis.
 Vec3 towardAxis(const Vec3& x, const Vec3& centre);

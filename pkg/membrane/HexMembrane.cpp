@@ -1,6 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "HexMembrane.hpp"
 
+#include "Scatter.hpp"
 #include "kernels/Check.hpp"
 #include "kernels/PressureForce.hpp"
 #include "kernels/RadialForce.hpp"
@@ -128,6 +129,26 @@ void HexMembrane::gather(const Scene& scene, const string& who, vector<Vector3r>
 		else
 #pragma omp critical
 			missing = i;
+	}
+	if (missing >= 0) body(scene, missing, who); // throws
+}
+
+void HexMembrane::gather(const Scene& scene, const string& who, hexmembrane::RingField& x) const
+{
+	requireGenerated(who);
+	if (!x.fits(perRing, rings)) x = hexmembrane::RingField(perRing, rings);
+	int missing = -1;
+#pragma omp parallel for schedule(static) reduction(max : missing)
+	for (int k = 0; k < rings; ++k) {
+		for (int i = 0; i < perRing; ++i) {
+			prefetchAhead(*scene.bodies, ids, k * perRing + i);
+			const Body* b = livingBody(*scene.bodies, ids[k * perRing + i]);
+			if (b)
+				x.set(k, i, b->state->se3.position);
+			else
+				missing = std::max(missing, k * perRing + i);
+		}
+		x.wrap(k);
 	}
 	if (missing >= 0) body(scene, missing, who); // throws
 }

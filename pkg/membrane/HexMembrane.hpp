@@ -7,6 +7,7 @@
 #include <lib/serialization/Serializable.hpp>
 
 #include "kernels/HexLattice.hpp"
+#include "kernels/RingField.hpp"
 
 namespace yade {
 
@@ -25,6 +26,8 @@ public:
 
 	//! Present centres of all particles. Throws when a body is gone; `who` asks.
 	void gather(const Scene& scene, const string& who, vector<Vector3r>& positions) const;
+	//! The same as wrapped rows; the field is made when it does not fit.
+	void gather(const Scene& scene, const string& who, hexmembrane::RingField& positions) const;
 	//! A body of the membrane. Throws when it is gone.
 	const shared_ptr<Body>& body(const Scene& scene, int index, const string& who) const;
 	//! All triangles as local indices.

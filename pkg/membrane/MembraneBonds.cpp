@@ -100,17 +100,27 @@ void MembraneBonds::action()
 	for (int m : missing)
 		if (m >= 0) membrane->body(*scene, m, "MembraneBonds"); // throws
 
+	computeForces();
+
+#pragma omp parallel for schedule(static)
+	for (int k = 0; k < membrane->rings; ++k) scatterRing(k, bad);
+	for (int b : bad)
+		if (b >= 0) throwNotFinite("MembraneBonds: bond force", membrane->ids[b], *scene);
+	bookEnergy();
+}
+
+void MembraneBonds::computeForces()
+{
 	// the saved attributes are the state: lent to the kernel for the step
 	state.shear.swap(shearForces);
 	state.broken.swap(broken);
 	kernel->compute(state, scene->dt);
 	state.shear.swap(shearForces);
 	state.broken.swap(broken);
+}
 
-#pragma omp parallel for schedule(static)
-	for (int k = 0; k < membrane->rings; ++k) scatterRing(k, bad);
-	for (int b : bad)
-		if (b >= 0) throwNotFinite("MembraneBonds: bond force", membrane->ids[b], *scene);
+void MembraneBonds::bookEnergy()
+{
 	if (scene->trackEnergy) scene->energy->add(elasticEnergy(), "elastMembrane", energyIndex, /*reset*/ true);
 }
 

@@ -4,6 +4,7 @@
 #include "HexMembrane.hpp"
 
 #include "kernels/BondForce.hpp"
+#include "kernels/ContactLaw.hpp"
 
 #include <core/GlobalEngine.hpp>
 
@@ -21,9 +22,19 @@ public:
 	vector<Real> normalForces();
 	int brokenCount() const;
 
+	// In parts, for an engine that steps the membrane itself: prepare() once, then positions into the kernel and computeForces() each step.
+	//! \throws std::invalid_argument, std::runtime_error for what is set wrong
+	void prepare();
+	//! Holds positions (and with shear velocities and spins) that it is given, and the forces of the last step.
+	hexmembrane::BondForce& bondKernel() { return *kernel; }
+	void computeForces();
+	//! Stiffness of a bond (N/m), after prepare().
+	hexmembrane::Springs springs() const { return {built.kn, built.ks}; }
+	//! Enters the elastic energy into the scene's energies.
+	void bookEnergy();
+
 private:
 	hexmembrane::BondLaw law() const;
-	void prepare();
 	void gatherRing(int k, vector<int>& missing);
 	void scatterRing(int k, vector<int>& bad);
 	void requireStepped(const char* what) const;

@@ -17,15 +17,18 @@ const Body& MembraneORings::platen(Body::id_t id, const char* name) const
 	return *b;
 }
 
-void MembraneORings::action()
+std::pair<Vector3r, Vector3r> MembraneORings::velocities() const
 {
 	if (!membrane) throw std::runtime_error("MembraneORings.membrane = None: no membrane to act on; fix: MembraneORings(membrane=HexMembrane(...))");
 	membrane->requireGenerated("MembraneORings");
 	if (mode != "fixed" && mode != "platens") hexmembrane::reject("MembraneORings.mode", "'" + mode + "'", "unknown", "'fixed' or 'platens'");
-	const bool riding = mode == "platens";
-	const Vector3r below = riding ? platen(bottomPlaten, "bottomPlaten").state->vel : Vector3r::Zero();
-	const Vector3r above = riding ? platen(topPlaten, "topPlaten").state->vel : Vector3r::Zero();
+	if (mode == "fixed") return {Vector3r::Zero(), Vector3r::Zero()};
+	return {platen(bottomPlaten, "bottomPlaten").state->vel, platen(topPlaten, "topPlaten").state->vel};
+}
 
+void MembraneORings::action()
+{
+	const auto [below, above] = velocities();
 	const int n = membrane->perRing;
 	for (int row = 0; row < membrane->oRingRows; ++row)
 		for (int i = 0; i < n; ++i) {

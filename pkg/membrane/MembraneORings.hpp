@@ -12,6 +12,9 @@ class MembraneORings : public GlobalEngine {
 public:
 	void action() override;
 
+	//! Velocities of the lower and the upper rows. \throws std::invalid_argument, std::runtime_error for what is set wrong
+	std::pair<Vector3r, Vector3r> velocities() const;
+
 private:
 	const Body& platen(Body::id_t id, const char* name) const;
 

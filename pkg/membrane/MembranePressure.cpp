@@ -13,16 +13,15 @@ void MembranePressure::prepareMembrane()
 	membrane->requireGenerated("MembranePressure");
 	vertexIds = membrane->ids;
 	loaded.clear();
-	// all triangles of the rings that group 3 touches, and those of one ring more, so that vertex normals on its border are whole
-	const auto tube = membrane->stencil();
-	vector<std::array<int, 3>> list;
-	const auto isMain = [&](int k) { return k >= 0 && k < membrane->rings && membrane->groupOfRing(k) == 3; };
-	for (int k = 0; k + 1 < membrane->rings; ++k)
-		if (isMain(k - 1) || isMain(k) || isMain(k + 1) || isMain(k + 2)) hexmembrane::appendTriangles(tube, k, list);
-	for (int k = 0; k < membrane->rings; ++k)
-		for (int i = 0; isMain(k) && i < membrane->perRing; ++i) loaded.push_back(tube.at(k, i));
+	int first = membrane->rings, last = -1;
+	for (int k = 0; k < membrane->rings; ++k) {
+		if (membrane->groupOfRing(k) != 3) continue;
+		first = std::min(first, k);
+		last = k;
+		for (int i = 0; i < membrane->perRing; ++i) loaded.push_back(k * membrane->perRing + i);
+	}
 	const Real offset = surface == "centre" ? 0. : math::isnan(surfaceOffset) ? membrane->sphereRadius : surfaceOffset;
-	kernel = hexmembrane::PressureForce(hexmembrane::TriangleMesh(tube.particles(), std::move(list)), offset);
+	tube.reset(new hexmembrane::TubePressure(membrane->stencil(), first, last, offset));
 }
 
 void MembranePressure::prepareMesh()
@@ -33,7 +32,8 @@ void MembranePressure::prepareMesh()
 		                    "surfaceOffset in m, or surface='centre'");
 	vector<std::array<int, 3>> list;
 	for (const auto& t : triangles) list.push_back({t[0], t[1], t[2]});
-	kernel = hexmembrane::PressureForce(hexmembrane::TriangleMesh(static_cast<int>(ids.size()), std::move(list)), surface == "centre" ? 0. : surfaceOffset);
+	tube.reset();
+	mesh = hexmembrane::PressureForce(hexmembrane::TriangleMesh(static_cast<int>(ids.size()), std::move(list)), surface == "centre" ? 0. : surfaceOffset);
 	vertexIds = ids;
 	loaded.resize(ids.size());
 	for (size_t i = 0; i < ids.size(); ++i) loaded[i] = static_cast<int>(i);
@@ -46,8 +46,8 @@ void MembranePressure::prepare()
 	if (!vertexIds.empty() && builtFor == membrane.get() && builtSurface == surface && sameOffset && builtIds == ids && builtTriangles == triangles) return;
 
 	if (surface != "inner" && surface != "centre") hexmembrane::reject("MembranePressure.surface", "'" + surface + "'", "unknown", "'inner' or 'centre'");
-	const bool mesh = !ids.empty() || !triangles.empty();
-	if (static_cast<bool>(membrane) == mesh)
+	const bool ofMesh = !ids.empty() || !triangles.empty();
+	if (static_cast<bool>(membrane) == ofMesh)
 		hexmembrane::reject("MembranePressure.membrane", string(membrane ? "given together with ids or triangles" : "None"),
 		                    "what to press on is not clear", "either membrane=HexMembrane(...), or ids and triangles");
 	if (membrane)
@@ -61,12 +61,11 @@ void MembranePressure::prepare()
 	builtTriangles = triangles;
 }
 
-void MembranePressure::action()
+void MembranePressure::computeMesh()
 {
-	prepare();
 	const int count = static_cast<int>(vertexIds.size());
 	const auto& bodies = *scene->bodies;
-	int missing = -1, bad = -1;
+	int missing = -1;
 	positions.resize(count);
 #pragma omp parallel for schedule(static) reduction(max : missing)
 	for (int i = 0; i < count; ++i) {
@@ -80,8 +79,17 @@ void MembranePressure::action()
 	if (missing >= 0)
 		throw std::runtime_error("MembranePressure: body " + std::to_string(vertexIds[missing]) + " of the loaded surface is gone (iteration " +
 		                         std::to_string(scene->iter) + "); fix: do not erase it, or load the last checkpoint");
+	mesh.compute(pressure, positions, force);
+}
 
-	kernel.compute(pressure, positions, force);
+void MembranePressure::action()
+{
+	prepare();
+	if (tube) {
+		membrane->gather(*scene, "MembranePressure", rows);
+		tube->compute(pressure, rows);
+	} else
+		computeMesh();
 
 	// forces out, and the work since the last step by the trapezoidal rule, in one sweep
 	const int loadedCount = static_cast<int>(loaded.size());
@@ -89,30 +97,42 @@ void MembranePressure::action()
 	lastForces.resize(loadedCount, Vector3r::Zero());
 	lastPositions.resize(loadedCount, Vector3r::Zero());
 	Real done = 0;
+	int bad = -1;
 #pragma omp parallel for schedule(static) reduction(max : bad) reduction(+ : done)
 	for (int l = 0; l < loadedCount; ++l) {
 		const int v = loaded[l];
-		if (!isFinite(force[v])) bad = std::max(bad, v);
-		scene->forces.addForce(vertexIds[v], force[v]);
-		done += 0.5 * (lastForces[l] + force[v]).dot(positions[v] - lastPositions[l]);
-		lastForces[l] = force[v];
-		lastPositions[l] = positions[v];
+		const Vector3r f = forceOn(v), x = positionOf(v);
+		if (!isFinite(f)) bad = std::max(bad, v);
+		scene->forces.addForce(vertexIds[v], f);
+		done += 0.5 * (lastForces[l] + f).dot(x - lastPositions[l]);
+		lastForces[l] = f;
+		lastPositions[l] = x;
 	}
 	if (bad >= 0) throwNotFinite("MembranePressure: force", vertexIds[bad], *scene);
 	if (continued) work += done;
+	bookWork();
+}
+
+void MembranePressure::bookWork()
+{
 	if (scene->trackEnergy) scene->energy->add(-work, "pressureWork", energyIndex, /*reset*/ true);
 }
 
+Vector3r MembranePressure::forceOn(int v) const { return tube ? tube->force.get(v / membrane->perRing, v % membrane->perRing) : force[v]; }
+
+Vector3r MembranePressure::positionOf(int v) const { return tube ? rows.get(v / membrane->perRing, v % membrane->perRing) : positions[v]; }
+
 void MembranePressure::requireStepped(const char* what) const
 {
-	if (force.empty()) throw std::runtime_error(string("MembranePressure.") + what + ": nothing computed yet; fix: run a step first");
+	if (force.empty() && !tube) throw std::runtime_error(string("MembranePressure.") + what + ": nothing computed yet; fix: run a step first");
 }
 
 Real MembranePressure::area() const
 {
 	requireStepped("area");
+	if (tube) return tube->area();
 	vector<Real> perVertex;
-	kernel.vertexAreas(perVertex);
+	mesh.vertexAreas(perVertex);
 	Real sum = 0;
 	for (int v : loaded) sum += perVertex[v];
 	return sum;
@@ -122,15 +142,15 @@ Vector3r MembranePressure::resultant() const
 {
 	requireStepped("resultant");
 	Vector3r sum = Vector3r::Zero();
-	for (int v : loaded) sum += force[v];
+	for (int v : loaded) sum += forceOn(v);
 	return sum;
 }
 
 vector<Vector3r> MembranePressure::forces() const
 {
 	requireStepped("forces");
-	vector<Vector3r> applied(force.size(), Vector3r::Zero());
-	for (int v : loaded) applied[v] = force[v];
+	vector<Vector3r> applied(vertexIds.size(), Vector3r::Zero());
+	for (int v : loaded) applied[v] = forceOn(v);
 	return applied;
 }
 

@@ -4,6 +4,7 @@
 #include "HexMembrane.hpp"
 
 #include "kernels/PressureForce.hpp"
+#include "kernels/TubePressure.hpp"
 
 #include <core/GlobalEngine.hpp>
 
@@ -18,17 +19,29 @@ public:
 	Vector3r resultant() const;
 	vector<Vector3r> forces() const;
 
-private:
+	// In parts, for an engine that steps the membrane itself: prepare() once, then the kernel each step.
+	//! \throws std::invalid_argument, std::runtime_error for what is set wrong
 	void prepare();
+	//! The kernel of a membrane; none for a mesh of one's own.
+	hexmembrane::TubePressure* membraneKernel() { return tube.get(); }
+	//! Enters `work` into the scene's energies.
+	void bookWork();
+
+private:
 	void prepareMembrane();
 	void prepareMesh();
+	void computeMesh();
+	Vector3r forceOn(int vertex) const;
+	Vector3r positionOf(int vertex) const;
 	void requireStepped(const char* what) const;
 
 	// Caches, rebuilt from the attributes
-	hexmembrane::PressureForce kernel;
-	vector<Body::id_t> vertexIds;      //!< bodies that are the vertices of the mesh
-	vector<int> loaded;                //!< vertices that receive their force
-	vector<Vector3r> positions, force; //!< of all vertices
+	std::unique_ptr<hexmembrane::TubePressure> tube; //!< of a membrane
+	hexmembrane::RingField rows;                     //!< its positions
+	hexmembrane::PressureForce mesh;                 //!< of a mesh of one's own
+	vector<Body::id_t> vertexIds;                    //!< bodies that are the vertices of the mesh
+	vector<int> loaded;                              //!< vertices that receive their force
+	vector<Vector3r> positions, force;               //!< of all vertices
 	const HexMembrane* builtFor = nullptr;
 	string builtSurface;
 	vector<Body::id_t> builtIds;

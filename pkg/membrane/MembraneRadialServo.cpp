@@ -29,40 +29,53 @@ void MembraneRadialServo::prepare()
 		        "MembraneRadialServo.membrane: it has no rows beside the platens (group 2); fix: HexMembrane(platenRows=2), or leave this engine out");
 }
 
-void MembraneRadialServo::correct()
+void MembraneRadialServo::correct(Real measured)
 {
-	transmitted = membrane->transmittedPressure(2);
+	transmitted = measured;
 	if (pressure == 0) return;
 	const Real wanted = factor + gain * (pressure - transmitted) / pressure;
 	factor = std::min(std::max(wanted, 0.), maxFactor);
 	saturated = factor != wanted;
 }
 
-void MembraneRadialServo::action()
+void MembraneRadialServo::computeForces(const hexmembrane::RingField& x, const std::function<Real()>& transmittedNow)
 {
-	prepare();
+	if (gain > 0 && scene->iter % iterPeriod == 0) correct(transmittedNow());
 	const auto rule = hexmembrane::areaRuleFromName(areaRule);
-	membrane->gather(*scene, "MembraneRadialServo", positions);
-	if (gain > 0 && scene->iter % iterPeriod == 0) correct();
-
 	const auto tube = membrane->stencil();
-	vector<Vector3r> force, x;
+	if (!force.fits(tube.perRing, tube.rings)) force = hexmembrane::RingField(tube.perRing, tube.rings);
 	area = 0;
 	for (int k : rows) {
-		const Real a = hexmembrane::particleArea(tube, positions, k, membrane->sphereRadius, rule);
-		const auto centre = hexmembrane::ringShape(tube, positions, k).centre;
+		const Real a = hexmembrane::particleArea(tube, x, k, membrane->sphereRadius, rule);
+		const auto centre = hexmembrane::ringShape(tube, x, k).centre;
 		for (int i = 0; i < tube.perRing; ++i) {
-			const int v = tube.at(k, i);
-			x.push_back(positions[v]);
-			force.push_back(factor * pressure * a * hexmembrane::towardAxis(positions[v], centre));
-			if (!isFinite(force.back())) throwNotFinite("MembraneRadialServo: force", membrane->ids[v], *scene);
-			scene->forces.addForce(membrane->ids[v], force.back());
+			force.set(k, i, factor * pressure * a * hexmembrane::towardAxis(x.get(k, i), centre));
+			if (!isFinite(force.get(k, i))) throwNotFinite("MembraneRadialServo: force", membrane->ids[tube.at(k, i)], *scene);
 		}
 		area += a * tube.perRing;
 	}
-	work += hexmembrane::trapezoidalWork(lastForces, lastPositions, force, x);
-	lastForces.swap(force);
+}
+
+void MembraneRadialServo::action()
+{
+	prepare();
+	membrane->gather(*scene, "MembraneRadialServo", positions);
+	computeForces(positions, [this]() { return membrane->transmittedPressure(2); });
+	vector<Vector3r> f, x;
+	for (int k : rows)
+		for (int i = 0; i < membrane->perRing; ++i) {
+			f.push_back(force.get(k, i));
+			x.push_back(positions.get(k, i));
+			scene->forces.addForce(membrane->ids[k * membrane->perRing + i], f.back());
+		}
+	work += hexmembrane::trapezoidalWork(lastForces, lastPositions, f, x);
+	lastForces.swap(f);
 	lastPositions.swap(x);
+	bookWork();
+}
+
+void MembraneRadialServo::bookWork()
+{
 	if (scene->trackEnergy) scene->energy->add(-work, "radialServoWork", energyIndex, /*reset*/ true);
 }
 

@@ -2,8 +2,11 @@
 #pragma once
 
 #include "HexMembrane.hpp"
+#include "kernels/RingField.hpp"
 
 #include <core/GlobalEngine.hpp>
+
+#include <functional>
 
 namespace yade {
 
@@ -12,12 +15,21 @@ class MembraneRadialServo : public GlobalEngine {
 public:
 	void action() override;
 
-private:
+	// In parts, for an engine that steps the membrane itself: prepare() once, then computeForces() each step.
+	//! \throws std::invalid_argument, std::runtime_error for what is set wrong
 	void prepare();
-	void correct();
+	//! Corrects the factor when it is due, by the mean pressure that group 2 transmits; then `force` on its rings at these positions.
+	void computeForces(const hexmembrane::RingField& positions, const std::function<Real()>& transmittedNow);
+	//! Enters `work` into the scene's energies.
+	void bookWork();
 
-	vector<int> rows;           //!< rings of group 2
-	vector<Vector3r> positions; //!< all particles
+	vector<int> rows;             //!< rings of group 2, after prepare()
+	hexmembrane::RingField force; //!< on them, after computeForces()
+
+private:
+	void correct(Real measured);
+
+	hexmembrane::RingField positions; //!< all particles
 	int energyIndex = -1;
 
 	// clang-format off
