@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The configuration of a flexible-membrane triaxial test: sections, keys, units, defaults and ranges. SI units everywhere.
+"""The configuration of a triaxial test: sections, keys, units, defaults and ranges. SI units everywhere.
 
 ``load('test.yaml')`` or ``Config.of({...})`` gives a checked :class:`Config`; nothing is made before it has passed.
 ``resolved(config)`` adds seed and versions, and what it gives can be run again. Needs no YADE.
@@ -37,11 +37,19 @@ class Specimen:
 	porosity: float = key(0.40, "porosity of the packing, before consolidation", "", low=0.3, high=0.6)
 	seed: int = key(1, "seed of the packing's random numbers", "", low=0, high=2**31 - 1)
 	density: float = key(2650.0, "density of the grains", "kg/m3", low=0, openLow=True)
-	friction: float = key(0.5, "coefficient of friction between grains, tan of the angle", "", low=0, high=5)
+	stress: Optional[float] = key(
+		None,
+		"isotropic stress under which the packing is made, small against the test's; none: grains that touch nothing",
+		"Pa",
+		low=0,
+		openLow=True,
+	)
+	friction: float = key(0.5, "coefficient of friction between grains, tan of the angle; also of a packing made under stress", "", low=0, high=5)
+	rollingFriction: float = key(0.0, "coefficient of rolling friction mu_r between grains, moment <= mu_r R1 R2/(R1 + R2) Fn; platens: none", "", low=0, high=5)
 	emod: float = key(
-		6e7,
-		"contact modulus: grains of equal radius R get kn = emod R, unequal ones 2 emod R1 R2/(R1 + R2); "
-		"kn/(p d) = emod/(2 p) should be 300 or more",
+		4e7,
+		"contact modulus of PFC's deformability: kn = pi emod min(R1, R2)^2/(R1 + R2), pi emod R on platens and wall; "
+		"equal grains of diameter d: kn/(p d) = pi emod/(4 p), which should be 300 or more",
 		"Pa",
 		low=0,
 		openLow=True,
@@ -96,6 +104,20 @@ class Membrane:
 
 
 @dataclasses.dataclass
+class Wall:
+	"""The rigid cylinder wall of ``boundary: wall``: one radius, moved by a servo that holds the mean radial stress."""
+
+	friction: float = key(0.0, "coefficient of friction on the wall; with grains the lesser of both acts", "", low=0, high=5)
+	damping: float = key(1.0, "damping ratio of the radial servo; 1 is critical for the wall's contacts alone", "", low=0, high=10)
+	tolerance: float = key(
+		0.01, "relative error of the radial stress below which the servo has reached its target", "", low=0, high=0.5, openLow=True
+	)
+	maxVelocity: Optional[float] = key(
+		None, "largest velocity of the radius; none: 1e-3 radius/(d sqrt(rho/pressure)), an inertial number of 1e-3", "m/s", low=0, openLow=True
+	)
+
+
+@dataclasses.dataclass
 class Platens:
 	"""The two rigid end platens."""
 
@@ -119,6 +141,13 @@ class Consolidation:
 		0.05, "largest relative distance of transmitted pressure and axial stress from the pressure", "", low=0, high=0.5, openLow=True
 	)
 	maxSteps: int = key(200000, "steps after which a test that has not come to rest stops with an error", "", low=100)
+	timeLimit: Optional[float] = key(
+		None,
+		"time that the servos of top platen and rigid wall have to reach each target once, else the test stops with an error; none: maxSteps alone limits",
+		"s",
+		low=0,
+		openLow=True,
+	)
 
 
 @dataclasses.dataclass
@@ -149,7 +178,8 @@ class Output:
 	records: int = key(120, "rows of records.csv in shear", "", low=1, high=1000000)
 	consolidationSteps: int = key(500, "steps between rows in consolidation", "", low=1)
 	vtkEvery: int = key(20, "rows between VTK frames in shear, first and last state always; 0: no VTK", "", low=0)
-	checkpointEvery: int = key(20, "rows between checkpoints, the end of each stage always; 0: only there", "", low=0)
+	checkpointEvery: int = key(20, "rows between checkpoints, start of the consolidation and end of each stage always; 0: only there", "", low=0)
+	energy: bool = key(True, "track energies and record their balance")
 
 
 @dataclasses.dataclass
@@ -157,8 +187,12 @@ class Config:
 	"""A whole test."""
 
 	title: str = key("triaxial test", "a name for the plot and the log")
+	boundary: str = key(
+		"membrane", "lateral boundary of the specimen: flexible membrane or rigid cylinder wall; the packing is the same", "", choices=("membrane", "wall")
+	)
 	specimen: Specimen = section(Specimen, "the grains")
-	membrane: Membrane = section(Membrane, "the flexible membrane")
+	membrane: Membrane = section(Membrane, "the flexible membrane; particleRadius and placement also say the packing's radius")
+	wall: Wall = section(Wall, "the rigid wall, used with boundary: wall")
 	platens: Platens = section(Platens, "the end platens")
 	consolidation: Consolidation = section(Consolidation, "isotropic consolidation")
 	shear: Shear = section(Shear, "shearing")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""VTK frames of a test: grains and membrane surface as time series. The arrays are listed in :mod:`hexmembrane.vtk`."""
+"""VTK frames of a test: grains and lateral boundary as time series. The arrays are listed in :mod:`hexmembrane.vtk`."""
 
 import pathlib
 
@@ -7,13 +7,6 @@ import numpy
 from yade import O
 
 from hexmembrane import vtk
-
-
-def _states(ids):
-	"""Positions, velocities and displacements since the stage began, (N, 3) each, of the bodies."""
-	bodies = [O.bodies[i].state for i in ids]
-	x = numpy.array([tuple(s.pos) for s in bodies])
-	return x, numpy.array([tuple(s.vel) for s in bodies]), x - numpy.array([tuple(s.refPos) for s in bodies])
 
 
 def _contacts(count):
@@ -28,45 +21,26 @@ def _contacts(count):
 
 def writeGrains(path, grains):
 	"""Write the grains' state as it stands."""
-	x, v, u = _states(grains.ids)
+	x, v, u = vtk.states(O.bodies[i].state for i in grains.ids)
 	ids = numpy.array(grains.ids)
 	radii = numpy.array([O.bodies[i].shape.radius for i in grains.ids])
 	arrays = {"id": ids, "radius": radii, "velocity": v, "displacement": u, "coordination": _contacts(len(O.bodies))[ids]}
 	vtk.write(path, x, pointData=arrays)
 
 
-def writeMembrane(path, scene):
-	"""Write the membrane's state as it stands: a surface through the centres."""
-	membrane = scene.membrane
-	x, v, u = _states(membrane.ids)
-	triangles = numpy.array([tuple(t) for t in membrane.triangles])
-	group = numpy.array(membrane.groups, dtype=numpy.int32)
-	outward = vtk.normals(x - u, triangles)
-	points = {
-		"id": numpy.array(membrane.ids),
-		"group": group,
-		"radius": numpy.full(len(x), membrane.sphereRadius),
-		"velocity": v,
-		"displacement": u,
-		"normal_displacement": (u * outward).sum(axis=1),
-		"pressure": numpy.where(group == 1, 0.0, numpy.where(group == 2, scene.servo.pressure, scene.pressure.pressure)),
-	}
-	vtk.write(path, x, triangles, points, {"group": group[triangles].min(axis=1)})
-
-
 class Frames:
-	"""The frames written into ``out/vtk`` so far, with the series ``grains.pvd`` and ``membrane.pvd``."""
+	"""The frames written into ``out/vtk`` so far, with the series ``grains.pvd`` and that of the boundary, ``membrane.pvd`` or ``wall.pvd``."""
 
 	def __init__(self, out, before=()):
 		self.folder = pathlib.Path(out) / "vtk"
 		self.list = [tuple(frame) for frame in before]
 
-	def write(self, scene, grains):
-		"""Add the present state to both series."""
+	def write(self, scene, grains, reference):
+		"""Add the present state to both series; ``reference``: the stage's :class:`hexmembrane.measure.Reference`."""
 		self.folder.mkdir(exist_ok=True)
 		number = len(self.list)
 		writeGrains(self.folder / f"grains-{number:04d}.vtp", grains)
-		writeMembrane(self.folder / f"membrane-{number:04d}.vtp", scene)
+		scene.lateral.writeFrame(self.folder / f"{scene.lateral.name}-{number:04d}.vtp", reference)
 		self.list.append((O.time, number))
-		for name in ("grains", "membrane"):
+		for name in ("grains", scene.lateral.name):
 			vtk.series(self.folder / f"{name}.pvd", [(time, f"{name}-{k:04d}.vtp") for time, k in self.list])

@@ -5,10 +5,9 @@ import dataclasses
 import math
 
 import numpy
-from scipy.spatial import cKDTree
 from yade import O, utils
 
-from hexmembrane.vtk import normals
+from hexmembrane import energy
 
 
 @dataclasses.dataclass
@@ -16,19 +15,21 @@ class Reference:
 	"""The state that a stage's strains count from, and what does not change: grains, solid volume.
 
 	:param height: distance of the platens' faces [m].
-	:param radius: mean radius of the membrane's inner surface [m].
+	:param radius: mean radius of the boundary's inner surface [m].
 	:param volume: enclosed volume [m3].
+	:param energies: see :func:`hexmembrane.energy.measured`.
 	"""
 
 	height: float
 	radius: float
 	volume: float
+	energies: dict
 
 	@classmethod
 	def of(cls, scene):
 		"""The reference taken from the scene as it stands."""
 		bottom, top = scene.faces()
-		return cls(top - bottom, meanRadius(scene.membrane), scene.membrane.enclosedVolume(bottom, top))
+		return cls(top - bottom, scene.lateral.meanRadius(), scene.lateral.volume(bottom, top), energy.measured())
 
 
 @dataclasses.dataclass
@@ -56,53 +57,11 @@ class Grains:
 		)
 
 
-def meanRadius(membrane):
-	"""Mean radius [m] of the inner surface for Eq. 6: over the particles of groups 2 and 3, each about its ring's centroid.
-
-	The same rings all along, so that none enters or leaves the mean when a platen passes it.
-	"""
-	x = numpy.array(membrane.positions)[:, :2].reshape(membrane.rings, membrane.perRing, 2)
-	rows = slice(membrane.oRingRows, membrane.rings - membrane.oRingRows)
-	return float(numpy.linalg.norm(x - x.mean(axis=1, keepdims=True), axis=2)[rows].mean()) - membrane.sphereRadius
-
-
-def insideTube(point, x, triangles, perRing):
-	"""Whether a point is inside a tube of rings, its ends closed by fans, however much the tube is folded.
-
-	By the solid angles of the triangles, 2 atan2(a.(b x c), abc + (a.b)c + (b.c)a + (c.a)b), whose sum is 4 pi inside and 0 outside
-	an outward oriented surface (A. Van Oosterom, J. Strackee, The solid angle of a plane triangle, IEEE Trans. Biomed. Eng. 30, 1983).
-
-	:param x: (rings * perRing, 3) points from the lower ring to the upper one. :param triangles: (M, 3), outward.
-	"""
-	ring = numpy.arange(perRing)
-	after = numpy.roll(ring, -1)
-	last, n = len(x) - perRing, len(x)
-	points = numpy.vstack([x, x[:perRing].mean(axis=0), x[last:].mean(axis=0)]) - point
-	lower = numpy.column_stack([after, ring, numpy.full(perRing, n)])
-	upper = numpy.column_stack([last + ring, last + after, numpy.full(perRing, n + 1)])
-	a, b, c = (points[numpy.vstack([triangles, lower, upper])[:, k]] for k in range(3))
-	la, lb, lc = (numpy.linalg.norm(v, axis=1) for v in (a, b, c))
-	dots = [(p * q).sum(axis=1) * r for p, q, r in ((a, b, lc), (b, c, la), (c, a, lb))]
-	angles = 2 * numpy.arctan2((a * numpy.cross(b, c)).sum(axis=1), la * lb * lc + sum(dots))
-	return float(angles.sum()) > 2 * math.pi
-
-
 def escaped(scene, grains):
-	"""Id of a grain whose centre is outside the membrane or behind a platen's face, None when all are inside.
-
-	A grain on the inner side of the membrane particle nearest to it, by the surface's normal there, is inside; the few others, where
-	the membrane is folded, are looked at by :func:`insideTube`.
-	"""
-	membrane = scene.membrane
-	x = numpy.array(membrane.positions)
-	triangles = numpy.array([tuple(t) for t in membrane.triangles])
-	outward = normals(x, triangles)
+	"""Id of a grain whose centre is outside the lateral boundary or behind a platen's face, None when all are inside."""
 	centre = numpy.array([tuple(O.bodies[i].state.pos) for i in grains.ids])
-	nearest = cKDTree(x).query(centre)[1]
 	bottom, top = scene.faces()
-	lost = (centre[:, 2] <= bottom) | (centre[:, 2] >= top)
-	for k in numpy.flatnonzero(((centre - x[nearest]) * outward[nearest]).sum(axis=1) >= 0):
-		lost[k] = lost[k] or not insideTube(centre[k], x, triangles, membrane.perRing)
+	lost = scene.lateral.outside(centre) | (centre[:, 2] <= bottom) | (centre[:, 2] >= top)
 	return grains.ids[int(numpy.argmax(lost))] if lost.any() else None
 
 
@@ -118,16 +77,16 @@ def coordination(first, count):
 
 def row(scene, grains, reference, stage, elapsed):
 	"""The measured row as a dict; see :data:`hexmembrane.records.COLUMNS`."""
-	membrane = scene.membrane
+	lateral = scene.lateral
 	bottom, top = scene.faces()
 	height = top - bottom
-	volume = membrane.enclosedVolume(bottom, top)
-	radius = meanRadius(membrane)
-	pressure = scene.pressure.pressure
+	volume, radius = lateral.volume(bottom, top), lateral.meanRadius()
+	pressure = lateral.pressure
 	forces = scene.bottom.force, scene.top.force
-	q = (sum(forces) / 2 - pressure * scene.platenArea()) / (volume / height)
+	q = (sum(forces) / 2 - pressure * scene.endArea()) / (volume / height)
 	speed = scene.approachSpeed()
 	inertial = speed / height * grains.meanDiameter * math.sqrt(grains.density / pressure) if pressure > 0 else 0.0
+	energies = energy.measured()
 	dz, dr = height / reference.height - 1, radius / reference.radius - 1
 	return {
 		"stage": stage,
@@ -137,9 +96,9 @@ def row(scene, grains, reference, stage, elapsed):
 		"q": q,
 		"axial_stress": q + pressure,
 		"sigma3_applied": pressure,
-		"sigma3_transmitted_group3": membrane.transmittedPressure(3),
-		"sigma3_transmitted_group2": membrane.transmittedPressure(2),
-		"sigma3_transmitted_all": membrane.transmittedPressure(0),
+		"sigma3_transmitted_group3": lateral.transmitted(3),
+		"sigma3_transmitted_group2": lateral.transmitted(2),
+		"sigma3_transmitted_all": lateral.transmitted(0),
 		"volumetric_strain_radius": dz + 2 * dr,
 		"volumetric_strain_volume": volume / reference.volume - 1,
 		"porosity": 1 - grains.solid / volume,
@@ -151,7 +110,16 @@ def row(scene, grains, reference, stage, elapsed):
 		"height": height,
 		"mean_radius": radius,
 		"volume": volume,
-		"membrane_area": scene.pressure.area,
-		"bonds_broken": scene.bonds.brokenCount,
+		"membrane_area": lateral.pressedArea(bottom, top),
+		"bonds_broken": lateral.brokenBonds(),
 		"elapsed": round(elapsed, 2),
+		**_energies(energies, reference.energies),
 	}
+
+
+def _energies(now, start):
+	"""The columns of energy: stored ones as they are, the others since the stage began; nan without ``O.trackEnergy``."""
+	stored = {f"energy_{name}": now[name] for name in ("elastic", "membrane", "kinetic")}
+	flows = {f"energy_{name}": now[name] - start[name] for name in ("friction", "damping")}
+	columns = {**stored, **flows, "work_boundary": now["work"] - start["work"], "energy_error": energy.balance(now, start)}
+	return columns if O.trackEnergy else dict.fromkeys(columns, math.nan)

@@ -15,11 +15,12 @@ import numpy
 
 @dataclasses.dataclass(frozen=True)
 class Column:
-	"""One column; ``doc`` says sign, formula and source."""
+	"""One column; ``doc`` says sign, formula and source; ``optional``: may be nan."""
 
 	name: str
 	unit: str
 	doc: str
+	optional: bool = False
 
 	@property
 	def header(self):
@@ -34,18 +35,19 @@ COLUMNS = (
 	Column(
 		"q",
 		"Pa",
-		"deviatoric stress (F - sigma3 Ae)/Am: F mean platen force, Ae face of a platen, Am mean area V/h; compression positive",
+		"deviatoric stress (F - sigma3 Ae)/Am: F mean platen force, Ae face of a platen (pi r^2 in a rigid wall), Am mean area V/h; compression positive",
 	),
 	Column(
 		"axial_stress",
 		"Pa",
 		"q + sigma3_applied, at mid-height by the balance of forces on half the specimen; compression positive",
 	),
-	Column("sigma3_applied", "Pa", "pressure asked of the membrane; pushes inwards"),
+	Column("sigma3_applied", "Pa", "pressure asked of the membrane, or mean radial stress of the rigid wall; pushes inwards"),
 	Column(
 		"sigma3_transmitted_group3",
 		"Pa",
-		"radial contact forces of the membrane's main body on grains and platens over its smooth inner area; inwards positive",
+		"radial contact forces of the membrane's main body on grains and platens over its smooth inner area; inwards positive; "
+		"of a rigid wall (all three columns): normal forces on it over 2 pi r h",
 	),
 	Column(
 		"sigma3_transmitted_group2",
@@ -56,7 +58,7 @@ COLUMNS = (
 	Column(
 		"volumetric_strain_radius",
 		"-",
-		"theta = (h - h0)/h0 + 2 (r - r0)/r0, r mean radius of the membrane (Eq. 6, first order in the strains); dilation positive",
+		"theta = (h - h0)/h0 + 2 (r - r0)/r0, r as mean_radius (Eq. 6, first order in the strains); dilation positive",
 	),
 	Column(
 		"volumetric_strain_volume",
@@ -70,11 +72,28 @@ COLUMNS = (
 	Column("platen_force_bottom", "N", "on the bottom platen along its outward normal; positive when the specimen pushes back"),
 	Column("platen_force_top", "N", "the same on the top platen"),
 	Column("height", "m", "h, distance of the platens' faces"),
-	Column("mean_radius", "m", "r, mean radius of the membrane's inner surface"),
+	Column("mean_radius", "m", "r, mean radius of the membrane's inner surface, or radius of the rigid wall"),
 	Column("volume", "m3", "V, enclosed by the inner surface between the platens' faces"),
-	Column("membrane_area", "m2", "area on which the pressure acts (group 3)"),
-	Column("bonds_broken", "", "broken membrane bonds"),
+	Column("membrane_area", "m2", "area on which the pressure acts (group 3), 2 pi r h of a rigid wall"),
+	Column("bonds_broken", "", "broken membrane bonds, 0 with a rigid wall"),
 	Column("elapsed", "s", "wall clock spent on the test so far, set-up of a resumed run not counted"),
+	Column("energy_elastic", "J", "elastic energy of the contacts; this and all energies: nan with output.energy: false", True),
+	Column("energy_membrane", "J", "elastic energy of the membrane's bonds, 0 with a rigid wall", True),
+	Column("energy_kinetic", "J", "kinetic energy, mean of the half steps before and after", True),
+	Column("energy_friction", "J", "dissipated by sliding and rolling since the stage began", True),
+	Column("energy_damping", "J", "dissipated by the local damping since the stage began", True),
+	Column(
+		"work_boundary",
+		"J",
+		"work of platens, confining pressure, O-rings or rigid wall since the stage began; positive when done on the specimen",
+		True,
+	),
+	Column(
+		"energy_error",
+		"-",
+		"(work - change of stored energy - dissipated energy since the stage began) over the larger of work and the rest",
+		True,
+	),
 )
 
 _TEXT = ("stage",)
@@ -114,17 +133,20 @@ class Records:
 	def append(self, row):
 		"""Write one row, a mapping with exactly the columns' names; values are written so that they read back exactly.
 
-		:raises ValueError: a column is missing or unknown, or a number is not finite.
+		:raises ValueError: a column is missing or unknown, or a number is not finite (nan is allowed in the optional columns).
 		"""
 		names = [column.name for column in COLUMNS]
 		if set(row) != set(names):
 			odd = sorted(set(row) ^ set(names))
 			raise ValueError(f"records.row = {odd}: missing or unknown columns; fix: give each of COLUMNS once")
 		cells = []
-		for name in names:
-			value = row[name]
+		for column in COLUMNS:
+			name, value = column.name, row[column.name]
 			if name in _TEXT:
 				cells.append(value)
+				continue
+			if column.optional and math.isnan(value):
+				cells.append("nan")
 				continue
 			if not math.isfinite(value):
 				raise ValueError(f"records.{name} = {value} in step {row['step']}: is not finite; fix: see the state at the last checkpoint")

@@ -13,7 +13,7 @@ from hexmembrane.plots import plot
 from hexmembrane.progress import clock
 from hexmembrane.schema import ConfigError, toDict
 
-STAGES = ("specimen", "membrane", "consolidation", "shear")
+STAGES = ("specimen", "boundary", "consolidation", "shear")
 
 #: Keys that may differ when a test is resumed: they do not change what has been computed.
 _FREE = ("title", "output.vtkEvery", "output.checkpointEvery", "numerics.threads", "specimen.packing", "specimen.gradation")
@@ -46,9 +46,12 @@ def _sameTest(config, out):
 		)
 
 
-def _samePressure(config):
-	"""Check that the state in ``O`` was consolidated at the configuration's pressure."""
-	wanted, found = config.consolidation.pressure, scene.Scene().pressure.pressure
+def _sameState(config):
+	"""Check that the state in ``O`` has the configuration's boundary and was consolidated at its pressure."""
+	lateral = scene.Scene().lateral
+	if lateral.name != config.boundary:
+		raise ConfigError("boundary", config.boundary, f"the state has a {lateral.name}", f"give boundary: {lateral.name}")
+	wanted, found = config.consolidation.pressure, lateral.pressure
 	if abs(found - wanted) > 1e-9 * wanted:
 		raise ConfigError("consolidation.pressure", wanted, f"the state was consolidated at {found} Pa", "give that pressure")
 
@@ -81,7 +84,8 @@ def run(config, out, resume=False, until="shear", start=None, quiet=False):
 		test = stages.Test(config, out, quiet, facts)
 	elif start is not None:
 		stages.load(start)
-		_samePressure(config)
+		_sameState(config)
+		O.trackEnergy = config.output.energy
 		configuration.save(config, out / "config.yaml")
 		test = stages.Test(config, out, quiet)
 		test.beginShear()
@@ -93,7 +97,7 @@ def run(config, out, resume=False, until="shear", start=None, quiet=False):
 		O.reset()
 		scene.build(config, packing, say)
 		test = stages.Test(config, out, quiet)
-		if until == "membrane":
+		if until == "boundary":
 			test.checkpoint("generated")
 			return test
 	with test.records:
@@ -101,7 +105,7 @@ def run(config, out, resume=False, until="shear", start=None, quiet=False):
 
 
 def _stages(test, until, say):
-	if test.stage == "consolidation":
+	if test.stage in ("generated", "consolidation"):
 		test.consolidate()
 	if until == "shear":
 		test.shear()
@@ -113,7 +117,7 @@ def _stages(test, until, say):
 
 
 def _arguments(argv):
-	parser = argparse.ArgumentParser(prog="scripts/run", description="Runs a flexible-membrane triaxial test from a configuration.")
+	parser = argparse.ArgumentParser(prog="scripts/run", description="Runs a triaxial test from a configuration.")
 	parser.add_argument("config", metavar="CONFIG", help="YAML file of the test, see examples/README.md")
 	parser.add_argument("--out", metavar="DIR", help="folder for all output (default: out/NAME OF CONFIG)")
 	parser.add_argument("--resume", action="store_true", help="go on from the last checkpoint in DIR")

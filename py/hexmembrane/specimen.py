@@ -39,7 +39,10 @@ def radii(given, radius, height):
 
 
 def make(config, say):
-	"""Pack the grains of the configuration's gradation into the cylinder that its membrane will enclose.
+	"""Pack the grains of the configuration's gradation into the cylinder that its membrane or wall will enclose.
+
+	Under ``specimen.stress`` the modulus is such that contacts of equal grains are as stiff as the test's: CylinderPacking's rule is
+	kn = 2 young r1 r2/(r1 + r2), PFC's pi emod min(r1, r2)^2/(r1 + r2), equal with young = pi emod/2.
 
 	:returns: a :class:`hexmembrane.packing_file.Packing`.
 	:raises RuntimeError: the porosity is out of reach; the message says what is in reach.
@@ -48,12 +51,17 @@ def make(config, say):
 
 	given = config.specimen
 	radius = scene.soilRadius(config)
+	stressed = {}
+	if given.stress is not None:
+		stressed = {"stress": given.stress, "young": math.pi * given.emod / 2, "stiffnessRatio": given.kratio, "friction": given.friction}
 	packing = yade.CylinderPacking(
-		radius=radius, height=given.height, radii=radii(given, radius, given.height).tolist(), porosity=given.porosity, seed=given.seed
+		radius=radius, height=given.height, radii=radii(given, radius, given.height).tolist(), porosity=given.porosity, seed=given.seed, **stressed
 	)
 	packing.generate()
 	made = packing_file.Packing.of(packing, gradation=pathlib.Path(given.gradation).name)
 	say(f"specimen: {len(made)} grains of radius {1e3 * made.radii.min():.4g} to {1e3 * made.radii.max():.4g} mm, porosity {made.porosity:.4f}")
+	if stressed:
+		say(f"packed under {1e-3 * packing.radialStress:.4g} kPa (side) and {1e-3 * packing.axialStress:.4g} kPa (ends), coordination {packing.coordination:.3g}")
 	return made
 
 

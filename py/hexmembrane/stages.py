@@ -17,7 +17,8 @@ from hexmembrane.records import Records
 
 #: Parts that the pressure's smooth rise is divided into; each is 1 % of the time.
 RAMP_PARTS = 100
-
+#: Share of the pressure that the ramp begins with: servos hold no stress of 0.
+_FIRST = 0.01
 
 #: Largest inertial number of what counts as quasi-static.
 QUASISTATIC = 1e-3
@@ -28,7 +29,7 @@ class StageError(RuntimeError):
 
 
 class Test:
-	"""A test whose specimen and membrane are in ``O`` (see :func:`hexmembrane.scene.build`).
+	"""A test whose specimen and boundary are in ``O`` (see :func:`hexmembrane.scene.build`).
 
 	:param config: checked configuration. :param out: existing folder for all files. :param quiet: print nothing.
 	:param facts: a checkpoint's facts to go on from (its state loaded); None: begin.
@@ -39,7 +40,7 @@ class Test:
 		self.scene = scene.Scene()
 		self.grains = measure.Grains.of(self.scene.grainIds())
 		facts = facts or {}
-		self.stage = facts.get("stage", "consolidation")
+		self.stage = facts.get("stage", "generated")
 		self.rows = facts.get("rows", 0)
 		self.begun = facts.get("begun", {"step": O.iter, "time": O.time})
 		self.frames = frames.Frames(self.out, facts.get("frames", ()))
@@ -56,7 +57,9 @@ class Test:
 		return self.spent + time.monotonic() - self._clock
 
 	def _enter(self, stage):
-		"""Begin a stage: strains and displacements count from here."""
+		"""Begin a stage: strains, displacements and energies count from here."""
+		if O.trackEnergy and not O.energy.items():
+			self.advance(1)  # energies are known after a step
 		self.stage, self.rows = stage, 0
 		self.begun = {"step": O.iter, "time": O.time}
 		self.reference = measure.Reference.of(self.scene)
@@ -69,12 +72,15 @@ class Test:
 
 		:raises StageError: YADE stopped before.
 		"""
-		wanted = O.iter + steps
-		O.run(steps, True)
+		wanted, why = O.iter + steps, "see its messages above"
+		try:
+			O.run(steps, True)
+		except RuntimeError as error:
+			why = str(error)
 		if O.iter != wanted:
 			raise StageError(
-				f"{self.stage}.step = {O.iter}: YADE stopped before step {wanted}, see its messages above; "
-				f"fix: look at the last checkpoint in '{self.out}', use a smaller numerics.safety or a slower test"
+				f"{self.stage}.step = {O.iter}: YADE stopped before step {wanted}: {why}; "
+				f"fix: go on from the last checkpoint in '{self.out}', with a smaller numerics.safety, a slower test or what else is said here"
 			)
 
 	def row(self):
@@ -83,7 +89,7 @@ class Test:
 		lost = measure.escaped(self.scene, self.grains)
 		if lost is not None:
 			raise StageError(
-				f"{self.stage}.step = {O.iter}: grain {lost} at {tuple(O.bodies[lost].state.pos)} has left the membrane; "
+				f"{self.stage}.step = {O.iter}: grain {lost} at {tuple(O.bodies[lost].state.pos)} has left the {self.scene.lateral.name}; "
 				"fix: a smaller membrane.particleRadius, a smaller numerics.safety or a slower test"
 			)
 		self.records.append(self.last)
@@ -127,21 +133,19 @@ class Test:
 	# Consolidation
 
 	def consolidate(self):
-		"""Raise membrane pressure and axial stress together and smoothly, then wait for rest.
+		"""Raise confining pressure and axial stress together and smoothly, then wait for rest.
 
 		Ends when the unbalanced force ratio is below its limit and transmitted pressure (main body) and axial stress (platen
-		force over its face) are both within the tolerance of the pressure. Leaves ``consolidated.yade.gz``.
+		force over its face) are both within the tolerance of the pressure. Leaves ``consolidated.yade.gz``; the start is a checkpoint.
 
-		:raises StageError: not at rest after maxSteps; the state it reached is the checkpoint.
+		:raises StageError: not at rest after maxSteps, the state it reached is the checkpoint; or a servo did not reach its target within
+			timeLimit, the checkpoint is the last one before.
 		"""
 		given = self.config.consolidation
 		rampTime = given.rampTime or 30 * self._inertialTime()
 		with Progress("consolidation", self.quiet) as progress:
-			if self.rows == 0:
-				self._enter("consolidation")
-				if given.friction is not None:
-					self.scene.setFriction(given.friction)
-				self.scene.top.maxVelocity = QUASISTATIC * self.reference.height / self._inertialTime()
+			if self.stage == "generated":
+				self._beginConsolidation()
 			while not (self.rows and self._atRest(rampTime)):
 				steps = O.iter - self.begun["step"]
 				if steps >= given.maxSteps:
@@ -160,17 +164,30 @@ class Test:
 		self.beginShear()
 		self.checkpoint("consolidated")
 
+	def _beginConsolidation(self):
+		given = self.config.consolidation
+		self.stage = "consolidation"
+		self.scene.setPressure(_FIRST * given.pressure)
+		speed = QUASISTATIC / self._inertialTime()
+		self.scene.top.maxVelocity = speed * self.reference.height
+		self.scene.lateral.setMaxVelocity(self.config.wall.maxVelocity or speed * self.reference.radius)
+		self.scene.setTimeLimit(given.timeLimit)
+		if given.friction is not None:
+			self.scene.setFriction(given.friction)
+		self._enter("consolidation")
+		self.checkpoint()
+
 	def _inertialTime(self):
 		"""d sqrt(rho/sigma3) [s]: a strain rate times this is the inertial number."""
 		return self.grains.meanDiameter * math.sqrt(self.grains.density / self.config.consolidation.pressure)
 
 	def _rampedChunk(self, rampTime, steps):
-		"""Run ``steps`` steps, the pressure following its smooth rise P (1 - cos(pi t/T))/2, never below 1 % of P."""
+		"""Run ``steps`` steps, the pressure following its smooth rise P (1 - cos(pi t/T))/2, never below _FIRST of P."""
 		target = self.config.consolidation.pressure
 		end = O.iter + steps
 		while O.iter < end:
 			share = min(1.0, (O.time - self.begun["time"]) / rampTime)
-			self.scene.setPressure(target * max(0.01, (1 - math.cos(math.pi * share)) / 2))
+			self.scene.setPressure(target * max(_FIRST, (1 - math.cos(math.pi * share)) / 2))
 			part = end - O.iter
 			if share < 1:
 				part = min(part, max(1, math.ceil(rampTime / (RAMP_PARTS * O.dt))))
@@ -181,7 +198,7 @@ class Test:
 		target = self.config.consolidation.pressure
 		return {
 			"transmitted pressure": abs(self.last["sigma3_transmitted_group3"] / target - 1),
-			"axial stress": abs(self.last["platen_force_top"] / (target * self.scene.platenArea()) - 1),
+			"axial stress": abs(self.last["platen_force_top"] / (target * self.scene.endArea()) - 1),
 		}
 
 	def _atRest(self, rampTime):
@@ -212,6 +229,7 @@ class Test:
 		"""Strains count from here and the platens are set to their velocities."""
 		self._enter("shear")
 		self.scene.setFriction(self.config.specimen.friction)
+		self.scene.setTimeLimit(None)
 		given = self.config.shear
 		share = {"top": (0.0, 1.0), "both": (0.5, 0.5)}[given.moving]
 		for drive, part in zip((self.scene.bottom, self.scene.top), share):
@@ -276,11 +294,12 @@ class Test:
 			f"sheared to {100 * row['axial_strain']:.2f} %: q {1e-3 * row['q']:.1f} kPa, volumetric strain "
 			f"{100 * row['volumetric_strain_radius']:.2f} % (Eq. 6) and {100 * row['volumetric_strain_volume']:.2f} % (volume), "
 			f"transmitted {1e-3 * row['sigma3_transmitted_group3']:.2f} kPa, broken bonds {row['bonds_broken']}"
+			+ (f", energy balance off by {100 * row['energy_error']:.2g} %" if O.trackEnergy else "")
 		)
 
 	def _frame(self):
 		if self.config.output.vtkEvery:
-			self.frames.write(self.scene, self.grains)
+			self.frames.write(self.scene, self.grains, self.reference)
 
 	def _checkpointDue(self):
 		every = self.config.output.checkpointEvery

@@ -20,8 +20,13 @@ def sphereMass(radius, density):
 
 
 def contactStiffness(emod, r1, r2):
-	"""Normal stiffness of YADE's Ip2_FrictMat_FrictMat_FrictPhys for one modulus: 2 emod r1 r2/(r1 + r2) [N/m]."""
-	return 2 * emod * r1 * r2 / (r1 + r2)
+	"""Normal stiffness [N/m] of two spheres of one modulus by PFC's deformability: pi emod min(r1, r2)^2/(r1 + r2)."""
+	return math.pi * emod * min(r1, r2) ** 2 / (r1 + r2)
+
+
+def stiffnessLevel(emod, pressure):
+	"""kn/(p d) of contacts of two equal grains of diameter d: pi emod/(4 p)."""
+	return math.pi * emod / (4 * pressure)
 
 
 def bondStiffness(young, thickness, poisson):
@@ -30,21 +35,26 @@ def bondStiffness(young, thickness, poisson):
 	return kn, max(0.0, kn * (1 - 3 * poisson) / (1 + poisson))
 
 
-def estimate(specimen, membrane, smallest, largest, particleRadius):
-	"""(critical step of the grains, of the membrane spheres) [s], before there are contacts.
+def grainStep(specimen, smallest):
+	"""Critical step [s] of the grains before there are contacts: CONTACTS equal neighbours all round a smallest grain share their
+	stiffness among three directions.
 
-	A grain: CONTACTS equal neighbours all round share their stiffness among three directions; a membrane sphere: PRESSING
-	grains of the largest radius at once, and six bonds of which a lattice mode sees at most 6 kn.
-
-	:param specimen: configuration's specimen section. :param membrane: its membrane section.
-	:param smallest: smallest grain radius [m]. :param largest: largest one [m]. :param particleRadius: of the membrane [m].
+	:param specimen: configuration's specimen section. :param smallest: smallest grain radius [m].
 	"""
 	kn = contactStiffness(specimen.emod, smallest, smallest)
 	directional = CONTACTS / 3 * kn * (1 + 2 / specimen.kratio)
-	grain = 2 / math.sqrt(2 * directional / sphereMass(smallest, specimen.density))
+	return 2 / math.sqrt(2 * directional / sphereMass(smallest, specimen.density))
+
+
+def membraneStep(specimen, membrane, largest, particleRadius):
+	"""Critical step [s] of the membrane's spheres before there are contacts: PRESSING grains of the largest radius at once, and six
+	bonds of which a lattice mode sees at most 6 kn.
+
+	:param specimen, membrane: configuration's sections. :param largest: largest grain radius [m]. :param particleRadius: [m].
+	"""
 	bond = sum(bondStiffness(membrane.young, membrane.thickness, membrane.poisson))
 	pressed = PRESSING * contactStiffness(specimen.emod, particleRadius, largest) + 6 * bond
-	return grain, 2 / math.sqrt(pressed / sphereMass(particleRadius, membrane.density))
+	return 2 / math.sqrt(pressed / sphereMass(particleRadius, membrane.density))
 
 
 def bound(count, pairs, normals, kn, ks, mass, extra=None):
@@ -68,14 +78,14 @@ def bound(count, pairs, normals, kn, ks, mass, extra=None):
 
 
 def measured(scene):
-	"""Critical step [s] of YADE's scene with the contacts that it has now, membrane bonds added."""
+	"""Critical step [s] of YADE's scene with the contacts that it has now and the springs of the boundary."""
 	from yade import O
 
 	contacts = [(i.id1, i.id2, tuple(i.geom.normal), i.phys.kn, i.phys.ks) for i in O.interactions]
 	bodies = list(O.bodies)
 	mass = numpy.array([b.state.mass if b.dynamic and b.state.blockedDOFs != "xyzXYZ" else math.inf for b in bodies])
 	extra = numpy.zeros(len(bodies))
-	extra[scene.membrane.ids] = 3 * (scene.bonds.kn + scene.bonds.ks)
+	scene.lateral.addStiffness(extra)
 	if not contacts:
 		return bound(len(bodies), numpy.empty((0, 2), int), numpy.empty((0, 3)), numpy.empty(0), numpy.empty(0), mass, extra)
 	first, second, normal, kn, ks = zip(*contacts)

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Grains and membrane as VTK XML files (.vtp) with a .pvd time series, for ParaView; written by VTK's own writer.
+"""Grains and lateral boundary as VTK XML files (.vtp) with a .pvd time series, for ParaView; written by VTK's own writer.
 
 Arrays of the grains' points: id, radius [m], velocity [m/s], displacement [m] since the first frame, coordination (contacts
 with a normal force, all partners). Of the membrane's points (sphere centres): id, group, radius [m], velocity [m/s],
 displacement [m], normal_displacement [m] since the first frame along the first frame's outward normal (outward positive),
 pressure [Pa] on the particle (positive inwards, 0 on the O-ring rows); of its triangles: group (the least of the corners').
+Of a rigid wall's points: pressure [Pa], normal_displacement [m], outward positive.
 """
 
 import os
@@ -98,6 +99,13 @@ def series(path, frames):
 		encoding="utf-8",
 	)
 	part.replace(path)
+
+
+def states(bodies):
+	"""Positions, velocities and displacements since the stage began, (N, 3) each, of bodies' states."""
+	bodies = list(bodies)
+	x = numpy.array([tuple(s.pos) for s in bodies])
+	return x, numpy.array([tuple(s.vel) for s in bodies]), x - numpy.array([tuple(s.refPos) for s in bodies])
 
 
 def normals(points, triangles):

@@ -61,12 +61,24 @@ def test_latticeConstants(poisson):
 	assert (kn - ks) / (3 * kn + ks) == pytest.approx(poisson, abs=1e-15)
 
 
+def estimate(grains, smallest, largest, particleRadius):
+	"""Of grains and membrane, as a scene has them."""
+	return timestep.grainStep(grains, smallest), timestep.membraneStep(grains, Membrane(young=1.0), largest, particleRadius)
+
+
 def test_estimateScales():
 	"""dt goes with the size, with the root of the density and with 1/root of the modulus."""
 	grains = Specimen(radius=1, height=1, gradation="x")
-	base = timestep.estimate(grains, Membrane(young=1.0), 1e-3, 2e-3, 1e-3)
-	assert timestep.estimate(grains, Membrane(young=1.0), 2e-3, 4e-3, 2e-3) == pytest.approx([2 * t for t in base], rel=1e-6)
+	base = estimate(grains, 1e-3, 2e-3, 1e-3)
+	assert estimate(grains, 2e-3, 4e-3, 2e-3) == pytest.approx([2 * t for t in base], rel=1e-6)
 	stiff = Specimen(radius=1, height=1, gradation="x", emod=4 * grains.emod, density=grains.density)
-	assert timestep.estimate(stiff, Membrane(young=1.0), 1e-3, 2e-3, 1e-3) == pytest.approx([t / 2 for t in base], rel=1e-6)
+	assert estimate(stiff, 1e-3, 2e-3, 1e-3) == pytest.approx([t / 2 for t in base], rel=1e-6)
 	heavy = Specimen(radius=1, height=1, gradation="x", density=4 * grains.density)
-	assert timestep.estimate(heavy, Membrane(young=1.0), 1e-3, 2e-3, 1e-3)[0] == pytest.approx(2 * base[0], rel=1e-12)
+	assert estimate(heavy, 1e-3, 2e-3, 1e-3)[0] == pytest.approx(2 * base[0], rel=1e-12)
+
+
+def test_stiffness():
+	"""PFC's deformability: equal grains of radius R have pi emod R/2; unequal ones go by the smaller."""
+	assert timestep.contactStiffness(1e8, 1e-3, 1e-3) == pytest.approx(math.pi * 1e8 * 1e-3 / 2, rel=1e-15)
+	assert timestep.contactStiffness(1e8, 3e-3, 1e-3) == timestep.contactStiffness(1e8, 1e-3, 3e-3) == pytest.approx(math.pi * 1e8 * 1e-3 / 4, rel=1e-15)
+	assert timestep.stiffnessLevel(4e7, 1e5) == pytest.approx(timestep.contactStiffness(4e7, 1.0, 1.0) / (1e5 * 2.0), rel=1e-15)

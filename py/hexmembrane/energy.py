@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The energies of a scene with ``O.trackEnergy``: what is stored, what was dissipated, what the boundaries have put in, and whether it adds up.
+
+Positions, contact forces and the energies made of them belong to one instant. Leapfrog's velocities lie half a step before and after it:
+the kinetic energy is the mean of both, and the local damping of a whole step is booked with the velocity before it. What is left of the
+balance is of first order in the step and small where little is kinetic.
+"""
+
+from yade import O, utils
+
+#: YADE's names of the work that comes in, with a minus sign there, as YADE has it with gravity.
+WORK = ("platenWork", "pressureWork", "radialServoWork", "oRingWork", "wallWork")
+
+
+def measured():
+	"""Energies [J]: stored elastic, membrane, kinetic; friction (sliding and rolling) and damping dissipated and work done on the specimen so far.
+
+	Zeros before the first step that tracked them.
+	"""
+	found = dict(O.energy.items())
+
+	def total(*names):
+		return sum(found.get(name, 0.0) for name in names)
+
+	return {
+		"elastic": total("elastPotential"),
+		"membrane": total("elastMembrane"),
+		"kinetic": (total("kinetic") + utils.kineticEnergy()) / 2 if found else 0.0,
+		"friction": total("plastDissip", "rollDissip"),
+		"damping": total("nonviscDamp"),
+		"work": -total(*WORK),
+	}
+
+
+def balance(now, start):
+	"""(work - change of the stored energy - dissipated energy) since ``start``, over the larger one of both sides; 0 without either."""
+	since = {name: now[name] - start[name] for name in now}
+	gone = sum(since.values()) - since["work"]
+	scale = max(abs(since["work"]), abs(gone))
+	return (since["work"] - gone) / scale if scale > 0 else 0.0
