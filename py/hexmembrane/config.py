@@ -19,6 +19,9 @@ import yaml
 
 from hexmembrane.schema import REQUIRED, ConfigError, build, key, section, toDict
 
+#: Keys of the specimen that are files.
+_PATHS = ("packing", "gradation")
+
 
 @dataclasses.dataclass
 class Specimen:
@@ -45,7 +48,7 @@ class Specimen:
 		openLow=True,
 	)
 	friction: float = key(0.5, "coefficient of friction between grains, tan of the angle; also of a packing made under stress", "", low=0, high=5)
-	rollingFriction: float = key(0.0, "coefficient of rolling friction mu_r between grains, moment <= mu_r R1 R2/(R1 + R2) Fn; platens: none", "", low=0, high=5)
+	rollingFriction: float = key(0.0, "coefficient of rolling friction mu_r between grains, moment <= mu_r R1 R2/(R1 + R2) Fn", "", low=0, high=5)
 	emod: float = key(
 		4e7,
 		"contact modulus of PFC's deformability: kn = pi emod min(R1, R2)^2/(R1 + R2), pi emod R on platens and wall; "
@@ -108,7 +111,14 @@ class Wall:
 	"""The rigid cylinder wall of ``boundary: wall``: one radius, moved by a servo that holds the mean radial stress."""
 
 	friction: float = key(0.0, "coefficient of friction on the wall; with grains the lesser of both acts", "", low=0, high=5)
-	damping: float = key(1.0, "damping ratio of the radial servo; 1 is critical for the wall's contacts alone", "", low=0, high=10)
+	damping: float = key(
+		0.2,
+		"damping ratio of the radial servo, 1: critical for the wall's contacts alone; while the radius grows at v the wall carries "
+		"4 damping K dt v more than its target, K the stiffness of its contacts",
+		"",
+		low=0,
+		high=10,
+	)
 	tolerance: float = key(
 		0.01, "relative error of the radial stress below which the servo has reached its target", "", low=0, high=0.5, openLow=True
 	)
@@ -122,7 +132,7 @@ class Platens:
 	"""The two rigid end platens."""
 
 	thickness: Optional[float] = key(None, "thickness; none: the membrane's end rows plus twice the largest travel", "m", low=0, openLow=True)
-	friction: float = key(0.3, "coefficient of friction on the platens; with grains the lesser of both acts", "", low=0, high=5)
+	friction: float = key(0.3, "coefficient of friction on the platens, no rolling friction; with grains the lesser of both acts", "", low=0, high=5)
 
 
 @dataclasses.dataclass
@@ -210,7 +220,7 @@ class Config:
 		config = build(cls, given)
 		if config.membrane.placement == "centred" and config.membrane.particleRadius is None:
 			raise ConfigError("membrane.placement", "centred", "the soil's radius then follows from the particle's radius", "give membrane.particleRadius")
-		for name in ("packing", "gradation"):
+		for name in _PATHS:
 			path = getattr(config.specimen, name)
 			if path is not None:
 				path = pathlib.Path(folder, path).expanduser().resolve()
@@ -220,12 +230,54 @@ class Config:
 		return config
 
 
-def load(path):
-	"""The checked configuration in a YAML file.
+def merged(given, changes):
+	"""Nested dictionaries with changes: those of a section change its keys, everything else is replaced; neither argument is changed."""
+	made = dict(given)
+	for name, value in changes.items():
+		old = made.get(name)
+		made[name] = merged(old, value) if isinstance(old, dict) and isinstance(value, dict) else value
+	return made
 
-	:raises ConfigError: the file is missing or no YAML, or a key is wrong.
+
+def derived(config, changes):
+	"""A checked configuration like ``config`` but for ``changes``, such as ``{"boundary": "wall", "specimen": {"seed": 2}}``.
+
+	:raises ConfigError: as :meth:`Config.of`.
 	"""
-	path = pathlib.Path(path)
+	return Config.of(merged(toDict(config), changes))
+
+
+def load(path):
+	"""The checked configuration in a YAML file. With a key ``base``, another file relative to this one, it is that with this one's changes.
+
+	:raises ConfigError: a file is missing or no YAML, is its own base, or a key is wrong.
+	"""
+	return Config.of(*_layers(pathlib.Path(path), ()))
+
+
+def _layers(path, above):
+	"""(keys of the file and its bases, folder that relative paths count from); ``above``: the files that it is a base of."""
+	given = _read(path)
+	if not isinstance(given, dict) or "base" not in given:
+		return given, path.parent
+	changes = {name: value for name, value in given.items() if name != "base"}
+	if not isinstance(given["base"], str):
+		raise ConfigError("base", given["base"], "is not text", "give the YAML file that this one changes")
+	base = path.parent / given["base"]
+	if base.resolve() in (*above, path.resolve()):
+		raise ConfigError("base", given["base"], "is its own base", "correct the path")
+	below, folder = _layers(base, (*above, path.resolve()))
+	if not isinstance(below, dict):
+		raise ConfigError("base", str(base), "is not a mapping of keys", "write 'key: value' lines in it")
+	specimen = below.get("specimen")
+	if isinstance(specimen, dict):
+		paths = {name: os.path.join(folder, specimen[name]) for name in _PATHS if isinstance(specimen.get(name), str)}
+		below = merged(below, {"specimen": {name: os.path.abspath(os.path.expanduser(value)) for name, value in paths.items()}})
+	return merged(below, changes), path.parent
+
+
+def _read(path):
+	"""What the YAML file says."""
 	try:
 		text = path.read_text(encoding="utf-8")
 	except OSError as error:
@@ -233,13 +285,12 @@ def load(path):
 	except UnicodeDecodeError:
 		raise ConfigError("configuration", str(path), "is not text in UTF-8", "give a YAML file") from None
 	try:
-		given = yaml.load(text, Loader=_UniqueKeys)
+		return yaml.load(text, Loader=_UniqueKeys)
 	except yaml.YAMLError as error:
 		where = getattr(error, "problem_mark", None)
 		line = f", line {where.line + 1}" if where else ""
 		problem = getattr(error, "problem", None) or error
 		raise ConfigError("configuration", f"{path}{line}", f"is not YAML ({problem})", "correct the line") from None
-	return Config.of(given, path.parent)
 
 
 class _UniqueKeys(yaml.SafeLoader):

@@ -33,8 +33,7 @@ def measured():
 
 
 def balance(now, start):
-	"""(work - change of the stored energy - dissipated energy) since ``start``, over the larger one of both sides; 0 without either."""
+	"""(work - change of the stored energy - dissipated energy) since ``start``, over the larger of that work and the energy stored now."""
 	since = {name: now[name] - start[name] for name in now}
-	gone = sum(since.values()) - since["work"]
-	scale = max(abs(since["work"]), abs(gone))
-	return (since["work"] - gone) / scale if scale > 0 else 0.0
+	scale = max(abs(since["work"]), now["elastic"] + now["membrane"] + now["kinetic"])
+	return (2 * since["work"] - sum(since.values())) / scale if scale > 0 else 0.0

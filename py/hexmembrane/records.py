@@ -91,7 +91,7 @@ COLUMNS = (
 	Column(
 		"energy_error",
 		"-",
-		"(work - change of stored energy - dissipated energy since the stage began) over the larger of work and the rest",
+		"(work - change of the stored energy - dissipated energy, since the stage began) over the larger of that work and the energy stored now",
 		True,
 	),
 )

@@ -17,7 +17,7 @@ STAGES = ("specimen", "boundary", "consolidation", "shear")
 
 #: Keys that may differ when a test is resumed: they do not change what has been computed.
 _FREE = ("title", "output.vtkEvery", "output.checkpointEvery", "numerics.threads", "specimen.packing", "specimen.gradation")
-_FREE_LIMITS = ("consolidation.maxSteps", "consolidation.unbalanced", "consolidation.tolerance")
+_FREE_LIMITS = ("consolidation.maxSteps", "consolidation.unbalanced", "consolidation.tolerance", "consolidation.timeLimit")
 
 
 def _freshFolder(out, resume):

@@ -146,6 +146,7 @@ class Test:
 		with Progress("consolidation", self.quiet) as progress:
 			if self.stage == "generated":
 				self._beginConsolidation()
+			self.scene.setTimeLimit(given.timeLimit)
 			while not (self.rows and self._atRest(rampTime)):
 				steps = O.iter - self.begun["step"]
 				if steps >= given.maxSteps:
@@ -171,7 +172,6 @@ class Test:
 		speed = QUASISTATIC / self._inertialTime()
 		self.scene.top.maxVelocity = speed * self.reference.height
 		self.scene.lateral.setMaxVelocity(self.config.wall.maxVelocity or speed * self.reference.radius)
-		self.scene.setTimeLimit(given.timeLimit)
 		if given.friction is not None:
 			self.scene.setFriction(given.friction)
 		self._enter("consolidation")
