@@ -3,6 +3,7 @@
 
 #include "Scatter.hpp"
 #include "kernels/Check.hpp"
+#include "kernels/MembraneTension.hpp"
 #include "kernels/PressureForce.hpp"
 #include "kernels/RadialForce.hpp"
 #include "kernels/SurfaceMeasure.hpp"
@@ -235,37 +236,53 @@ Real HexMembrane::meanRadius(Real zBottom, Real zTop, const string& surface) con
 	return sum / count - (inner ? sphereRadius : 0.);
 }
 
-Real HexMembrane::transmittedPressure(int group) const
+vector<Vector3r> HexMembrane::contactForces(const Scene& scene, const string& who) const
+{
+	const std::set<Body::id_t> own(ids.begin(), ids.end());
+	vector<Vector3r> forces(ids.size(), Vector3r::Zero());
+	for (size_t i = 0; i < ids.size(); ++i)
+		for (const auto& entry : body(scene, static_cast<int>(i), who)->intrs) {
+			const Interaction& contact = *entry.second;
+			if (!contact.isReal() || own.count(entry.first)) continue;
+			const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
+			if (!phys) continue;
+			// YADE's laws apply +normalForce to the second body
+			forces[i] += contact.getId1() == ids[i] ? phys->normalForce : Vector3r(-phys->normalForce);
+		}
+	return forces;
+}
+
+Real HexMembrane::groupPressure(int group, const vector<Vector3r>& x, const vector<Vector3r>& forces, const string& who) const
 {
 	if (group != 0 && group != 2 && group != 3)
-		hexmembrane::reject("HexMembrane.transmittedPressure: group", group, "no pressure is transmitted there", "0 (groups 2 and 3), 2 or 3");
-	const Scene& scene = currentScene();
-	const vector<Vector3r> x = positions_get();
-
-	const std::set<Body::id_t> own(ids.begin(), ids.end());
+		hexmembrane::reject(who + ": group", group, "no pressure is transmitted there", "0 (groups 2 and 3), 2 or 3");
+	const auto loads = hexmembrane::ringLoads(stencil(), x, forces, sphereRadius);
 	Real force = 0, area = 0;
 	for (int k = 0; k < rings; ++k) {
 		const int g = groupOfRing(k);
 		if (g == 1 || (group != 0 && g != group)) continue;
-		const Vector3r centre = hexmembrane::ringShape(stencil(), x, k).centre;
-		area += perRing * hexmembrane::particleArea(stencil(), x, k, sphereRadius, hexmembrane::AreaRule::tributary);
-		for (int i = k * perRing; i < (k + 1) * perRing; ++i) {
-			const Vector3r inward = hexmembrane::towardAxis(x[i], centre);
-			for (const auto& entry : body(scene, i, "HexMembrane.transmittedPressure")->intrs) {
-				const Interaction& contact = *entry.second;
-				if (!contact.isReal() || own.count(entry.first)) continue;
-				const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
-				if (!phys) continue;
-				// YADE's laws apply +normalForce to the second body
-				const Vector3r onOther = contact.getId1() == ids[i] ? phys->normalForce : Vector3r(-phys->normalForce);
-				force += onOther.dot(inward);
-			}
-		}
+		force += loads[k].force;
+		area += loads[k].area;
 	}
-	if (area <= 0)
-		throw std::runtime_error("HexMembrane.transmittedPressure: group " + std::to_string(group) +
-		                         " has no area; fix: platenRows > 0 when the membrane is generated");
+	if (area <= 0) throw std::runtime_error(who + ": group " + std::to_string(group) + " has no area; fix: platenRows > 0 when the membrane is generated");
 	return force / area;
+}
+
+Real HexMembrane::transmittedPressure(int group) const
+{
+	const string who = "HexMembrane.transmittedPressure";
+	requireGenerated(who);
+	return groupPressure(group, positions_get(), contactForces(currentScene(), who), who);
+}
+
+vector<Real> HexMembrane::transmittedByRing() const
+{
+	const string who = "HexMembrane.transmittedByRing";
+	requireGenerated(who);
+	vector<Real> pressures;
+	for (const auto& load : hexmembrane::ringLoads(stencil(), positions_get(), contactForces(currentScene(), who), sphereRadius))
+		pressures.push_back(load.force / load.area);
+	return pressures;
 }
 
 } // namespace yade

@@ -35,6 +35,10 @@ public:
 
 	//! Mean pressure (Pa) that the particles of a group (0: all) press on bodies which are not of the membrane.
 	Real transmittedPressure(int group) const;
+	//! The same ring by ring (Pa).
+	vector<Real> transmittedByRing() const;
+	//! Mean pressure (Pa) that forces on the particles (N, positive inwards) are over the inner area of a group (0: all of groups 2 and 3).
+	Real groupPressure(int group, const vector<Vector3r>& x, const vector<Vector3r>& forces, const string& who) const;
 
 	// Python-facing
 	vector<int> groups_get() const;
@@ -50,6 +54,8 @@ private:
 	void checkGrain(Real sphereRadius) const;
 	//! Centres, or the points one radius further in along the vertex normals.
 	vector<Vector3r> surfacePoints(const string& surface) const;
+	//! Sum of the normal contact forces of each particle on all that is not membrane (N).
+	vector<Vector3r> contactForces(const Scene& scene, const string& who) const;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(HexMembrane,Serializable,
@@ -91,6 +97,7 @@ private:
 		.def("enclosedVolume",&HexMembrane::enclosedVolume,(boost::python::arg("zBottom")=NaN,boost::python::arg("zTop")=NaN,boost::python::arg("surface")="inner"),"Present volume [m³] enclosed by the membrane's 'inner' (or 'centre') surface and horizontal planes at two heights, the platens' faces (NaN: at the end rings).")
 		.def("meanRadius",&HexMembrane::meanRadius,(boost::python::arg("zBottom")=NaN,boost::python::arg("zTop")=NaN,boost::python::arg("surface")="inner"),"Present mean distance [m] of the particles from their ring's centroid, rings between two heights (for Eq. 6); 'inner': less the sphere radius.")
 		.def("transmittedPressure",&HexMembrane::transmittedPressure,(boost::python::arg("group")=0),"Pressure [Pa] that arrives: radial part (towards the centroid of the ring) of the normal contact forces on all other bodies (grains, platens' sides), over the present smooth inner area of the particles of a group (0: all of groups 2 and 3), $2\\pi(r-R)$ a ring times half the distance of its neighbours. Smooth and radial, since a membrane that sags between grains has more surface than the cylinder that the pressure is asked for (8 % more for R/r = 0.8 at 100 kPa). Positive presses inwards. From the contacts of the last step.")
+		.def("transmittedByRing",&HexMembrane::transmittedByRing,"The same for each ring from the bottom, O-ring rows included: a list of :yref:`rings<HexMembrane.rings>` pressures [Pa]. An end ring counts half the distance to its one neighbour twice.")
 	);
 	// clang-format on
 	DECLARE_LOGGER;

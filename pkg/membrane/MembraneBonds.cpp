@@ -4,6 +4,7 @@
 #include "Scatter.hpp"
 #include "kernels/Check.hpp"
 #include "kernels/LatticeConstants.hpp"
+#include "kernels/MembraneTension.hpp"
 
 namespace yade {
 
@@ -148,6 +149,35 @@ vector<Real> MembraneBonds::normalForces()
 	for (size_t b = 0; b < forces.size(); ++b) forces[b] = kernel->normalForce(state, static_cast<int>(b));
 	state.broken.swap(broken);
 	return forces;
+}
+
+vector<Vector3r> MembraneBonds::steppedPositions() const
+{
+	vector<Vector3r> x;
+	for (int k = 0; k < membrane->rings; ++k)
+		for (int i = 0; i < membrane->perRing; ++i) x.push_back(kernel->position.get(k, i));
+	return x;
+}
+
+Real MembraneBonds::axialTension(Real z)
+{
+	requireStepped("axialTension");
+	hexmembrane::requireFinite("MembraneBonds.axialTension: z", z, "m");
+	state.shear.swap(shearForces);
+	state.broken.swap(broken);
+	const auto onFirst = hexmembrane::bondForces(*kernel, state);
+	state.shear.swap(shearForces);
+	state.broken.swap(broken);
+	return hexmembrane::axialTension(membrane->stencil(), steppedPositions(), onFirst, z);
+}
+
+Real MembraneBonds::radialShare(int group)
+{
+	requireStepped("radialShare");
+	vector<Vector3r> forces;
+	for (int k = 0; k < membrane->rings; ++k)
+		for (int i = 0; i < membrane->perRing; ++i) forces.push_back(kernel->force.get(k, i));
+	return membrane->groupPressure(group, steppedPositions(), forces, "MembraneBonds.radialShare");
 }
 
 Real MembraneBonds::criticalTimeStep() const

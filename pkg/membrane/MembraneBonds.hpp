@@ -21,6 +21,8 @@ public:
 	Real criticalTimeStep() const;
 	vector<Real> normalForces();
 	int brokenCount() const;
+	Real axialTension(Real z);
+	Real radialShare(int group);
 
 	// In parts, for an engine that steps the membrane itself: prepare() once, then positions into the kernel and computeForces() each step.
 	//! \throws std::invalid_argument, std::runtime_error for what is set wrong
@@ -38,6 +40,8 @@ private:
 	void gatherRing(int k, vector<int>& missing);
 	void scatterRing(int k, vector<int>& bad);
 	void requireStepped(const char* what) const;
+	//! Positions that the last step's forces belong to.
+	vector<Vector3r> steppedPositions() const;
 
 	// Caches: rebuilt from the attributes when they are missing or other than when they were built.
 	std::unique_ptr<hexmembrane::BondForce> kernel;
@@ -73,6 +77,8 @@ private:
 		,/*ctor*/,
 		.def("elasticEnergy",&MembraneBonds::elasticEnergy,"Elastic energy of all bonds [J] at the last step.")
 		.def("normalForces",&MembraneBonds::normalForces,"Normal force of each bond at the last step [N], tension positive, in the order of :yref:`HexMembrane.bonds`.")
+		.def("axialTension",&MembraneBonds::axialTension,(boost::python::arg("z")),"Axial force [N] that the membrane carries through the horizontal plane at the height z [m], at the last step: the axial parts of the normal and shear forces of all bonds that cross it, tension positive. A thin tube: $2\\pi r N_z$. Broken bonds count with what they still carry.")
+		.def("radialShare",&MembraneBonds::radialShare,(boost::python::arg("group")=3),"Pressure [Pa] that the membrane's own forces add to what reaches the soil at a group (0: all of groups 2 and 3), at the last step: the sum of the bonds' forces on its particles towards their ring's axis, over the same smooth inner area as :yref:`HexMembrane.transmittedPressure`. Positive presses inwards; a thin tube: $N_\\theta/r$ with $r$ the inner radius. At rest the transmitted pressure is the applied one plus this.")
 		.def("criticalTimeStep",&MembraneBonds::criticalTimeStep,"Upper bound of a stable time step [s] of the bonds alone, $2\\sqrt{m/(6(k_n+k_s))}$ (Gershgorin's circle for six neighbours); contacts make it shorter.")
 		.add_property("brokenCount",&MembraneBonds::brokenCount,"Number of broken bonds.")
 	);

@@ -3,6 +3,9 @@
 
 #include "Scatter.hpp"
 #include "kernels/Check.hpp"
+#include "kernels/WorkMeter.hpp"
+
+#include <pkg/dem/NewtonIntegrator.hpp>
 
 namespace yade {
 
@@ -17,6 +20,16 @@ const Body& MembraneORings::platen(Body::id_t id, const char* name) const
 	return *b;
 }
 
+void MembraneORings::requireOrder() const
+{
+	bool integrated = false;
+	for (const auto& engine : scene->engines) {
+		if (dynamic_cast<const NewtonIntegrator*>(engine.get())) integrated = true;
+		if (engine.get() == this && integrated)
+			throw std::runtime_error("MembraneORings: it comes after NewtonIntegrator in O.engines; fix: put it before, after the engines that add forces");
+	}
+}
+
 std::pair<Vector3r, Vector3r> MembraneORings::velocities() const
 {
 	if (!membrane) throw std::runtime_error("MembraneORings.membrane = None: no membrane to act on; fix: MembraneORings(membrane=HexMembrane(...))");
@@ -26,15 +39,37 @@ std::pair<Vector3r, Vector3r> MembraneORings::velocities() const
 	return {platen(bottomPlaten, "bottomPlaten").state->vel, platen(topPlaten, "topPlaten").state->vel};
 }
 
+void MembraneORings::grip(int k, const Vector3r& velocity, vector<Vector3r>& held, vector<Vector3r>& at)
+{
+	for (int i = k * membrane->perRing; i < (k + 1) * membrane->perRing; ++i) {
+		State& state = *membrane->body(*scene, i, "MembraneORings")->state;
+		work += 0.5 * state.mass * (velocity.squaredNorm() - state.vel.squaredNorm());
+		state.vel = velocity;
+		state.isDamped = false;
+		held.push_back(-scene->forces.getForce(membrane->ids[i]));
+		at.push_back(state.pos);
+	}
+}
+
+void MembraneORings::bookWork(vector<Vector3r>& held, vector<Vector3r>& at)
+{
+	work += hexmembrane::trapezoidalWork(lastForces, lastPositions, held, at);
+	lastForces.swap(held);
+	lastPositions.swap(at);
+	if (scene->trackEnergy) scene->energy->add(-work, "oRingWork", energyIndex, /*reset*/ true);
+}
+
 void MembraneORings::action()
 {
 	const auto [below, above] = velocities();
-	const int n = membrane->perRing;
-	for (int row = 0; row < membrane->oRingRows; ++row)
-		for (int i = 0; i < n; ++i) {
-			membrane->body(*scene, row * n + i, "MembraneORings")->state->vel = below;
-			membrane->body(*scene, (membrane->rings - 1 - row) * n + i, "MembraneORings")->state->vel = above;
-		}
+	requireOrder();
+	scene->forces.sync();
+	vector<Vector3r> held, at;
+	for (int row = 0; row < membrane->oRingRows; ++row) {
+		grip(row, below, held, at);
+		grip(membrane->rings - 1 - row, above, held, at);
+	}
+	bookWork(held, at);
 }
 
 } // namespace yade

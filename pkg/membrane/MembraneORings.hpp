@@ -17,18 +17,30 @@ public:
 
 private:
 	const Body& platen(Body::id_t id, const char* name) const;
+	void requireOrder() const;
+	//! Gives ring k the velocity; what its particles gain of kinetic energy is the grip's work. Notes force and position of each.
+	void grip(int k, const Vector3r& velocity, vector<Vector3r>& held, vector<Vector3r>& at);
+	//! Work since the last step by the grip's forces, minus those on the particles, and their positions; both are taken over.
+	void bookWork(vector<Vector3r>& held, vector<Vector3r>& at);
+
+	int energyIndex = -1;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(MembraneORings,GlobalEngine,
-		"Motion of the O-ring rows (group 1) of a :yref:`HexMembrane`. Their particles are blocked in all degrees of freedom; this engine sets their velocity every step. Stands after the platens' drives and before :yref:`NewtonIntegrator`.\n\n"
+		"Motion of the O-ring rows (group 1) of a :yref:`HexMembrane`. Their particles are blocked in all degrees of freedom; this engine sets their velocity every step. Stands after all engines that add forces and after the platens' drives, and before :yref:`NewtonIntegrator`.\n\n"
 		"mode 'fixed': held in space throughout (the source study). 'platens': the lower rows move with bottomPlaten, the upper ones with topPlaten, as O-rings on the caps of a triaxial cell do. "
 		"(A platen whose velocity the integrator changes in the same step leads them by one step's velocity change; this does not accumulate.)\n\n"
-		"Errors: ``ValueError`` for an unknown mode, ``RuntimeError`` for a membrane not generated, a platen that is not there.\n\n"
+		"The grip on a particle is what moves it in spite of the forces $f$ that bonds and contacts exert on it, $m\\dot v-f$; its :yref:`work<MembraneORings.work>` is booked, and with :yref:`O.trackEnergy<Omega.trackEnergy>` minus the work is entered as 'oRingWork'. "
+		"Gripped particles are taken out of local damping (:yref:`State.isDamped`): nothing damps a prescribed motion, but NewtonIntegrator would book it in 'nonviscDamp'.\n\n"
+		"Errors: ``ValueError`` for an unknown mode, ``RuntimeError`` for a membrane not generated, a platen that is not there, a place behind NewtonIntegrator.\n\n"
 		"Example::\n\n\tMembraneORings(membrane=m,mode='platens',bottomPlaten=lower,topPlaten=upper)",
 		((shared_ptr<HexMembrane>,membrane,,,"The membrane. Required."))
 		((string,mode,"fixed",,"'fixed' or 'platens'."))
 		((Body::id_t,bottomPlaten,-1,,"Id of the body that the lower rows ride on (mode 'platens')."))
 		((Body::id_t,topPlaten,-1,,"Id of the body that the upper rows ride on (mode 'platens')."))
+		((Real,work,0,Attr::readonly,"Work done by the O-rings on the membrane so far [J]: against the forces on its gripped particles, trapezoidal in force and displacement, and what these particles gained in kinetic energy; positive when the O-rings stretch the membrane."))
+		((vector<Vector3r>,lastForces,,(Attr::readonly|Attr::hidden),"Grip without inertia at the last step, for the work."))
+		((vector<Vector3r>,lastPositions,,(Attr::readonly|Attr::hidden),"Positions of the last step, for the work."))
 	);
 	// clang-format on
 };
