@@ -72,14 +72,14 @@ class Test:
 
 		:raises StageError: YADE stopped before.
 		"""
-		wanted, why = O.iter + steps, "see its messages above"
+		wanted, why = O.iter + steps, None
 		try:
 			O.run(steps, True)
 		except RuntimeError as error:
 			why = str(error)
-		if O.iter != wanted:
+		if why or O.iter != wanted:
 			raise StageError(
-				f"{self.stage}.step = {O.iter}: YADE stopped before step {wanted}: {why}; "
+				f"{self.stage}.step = {O.iter}: YADE stopped before step {wanted}: {why or 'see its messages above'}; "
 				f"fix: go on from the last checkpoint in '{self.out}', with a smaller numerics.safety, a slower test or what else is said here"
 			)
 

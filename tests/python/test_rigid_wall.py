@@ -69,15 +69,29 @@ def test_frames(whole):
 	assert (vtk.normals(x, triangles)[:, :2] * x[:, :2]).sum(axis=1).min() > 0
 
 
-def test_resumed(whole, tmp_path):
-	"""Stopped after consolidation and resumed, a test on one thread has the very rows of one that was never stopped."""
-	path = configure(tmp_path, boundary="wall")
-	for arguments in (["--until", "consolidation"], ["--resume"]):
-		said = runOutside(path, "--out", tmp_path / "out", *arguments)
-		assert said.returncode == 0, said.stdout + said.stderr
-	expected, found = records.read(whole[0] / "records.csv"), records.read(tmp_path / "out" / "records.csv")
-	for name in set(expected) - {"elapsed"}:
-		assert list(found[name]) == list(expected[name]), name
+def test_shearFromConsolidatedState(whole, tmp_path, runHere):
+	"""The saved state has all of the wall and its servo: sheared again it gives the same curve, to rounding on any number of threads."""
+	path = configure(tmp_path, boundary="wall", shear={"strain": 0.005}, output={"records": 3})
+	code, _, errors = runHere(path, "--out", tmp_path / "out", "--from", whole[0] / "consolidated.yade.gz")
+	assert code == 0, errors
+	table, reference = records.read(tmp_path / "out" / "records.csv"), records.read(whole[0] / "records.csv")
+	row = reference["stage"].index("shear") + 3
+	for name in ("q", "mean_radius", "sigma3_transmitted_all", "energy_elastic", "work_boundary"):
+		assert table[name][-1] == pytest.approx(reference[name][row], rel=1e-6), name
+
+
+def test_bothPlatensMove(whole, tmp_path, runHere, O):
+	"""``moving: both`` shares the way between them; the strain is the same."""
+	from hexmembrane import scene
+
+	path = configure(tmp_path, boundary="wall", shear={"strain": 0.002, "moving": "both"}, output={"records": 2, "vtkEvery": 0})
+	code, _, errors = runHere(path, "--out", tmp_path / "out", "--from", whole[0] / "consolidated.yade.gz")
+	assert code == 0, errors
+	handles = scene.Scene()
+	ways = [abs(O.bodies[drive.platen].state.pos[2] - O.bodies[drive.platen].state.refPos[2]) for drive in (handles.bottom, handles.top)]
+	table = records.read(tmp_path / "out" / "records.csv")
+	assert table["axial_strain"][-1] == pytest.approx(0.002, rel=1e-2) and ways[0] > 0
+	assert ways[0] == pytest.approx(ways[1], rel=0.05)
 
 
 def test_stateOfAnotherBoundary(whole, tmp_path, runHere):

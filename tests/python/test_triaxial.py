@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A whole small test from its configuration, as a user runs it: killed half-way and resumed, and every way to ask wrongly."""
 
+import math
 import signal
 import subprocess
 import time
@@ -132,15 +133,23 @@ def test_specimenAlone(whole, tmp_path, runHere):
 
 
 def test_notAtRest(tmp_path, runHere):
-	"""Consolidation that cannot get there stops with the reason and a checkpoint, and can be resumed with more steps."""
+	"""Consolidation that cannot get there stops with the reason and a checkpoint, and can be resumed with more steps.
+
+	Without the tracking of energies their columns are nan, and the others are there.
+	"""
 	strict = {"unbalanced": 1e-12, "maxSteps": 400}
-	code, _, errors = runHere(configure(tmp_path, consolidation=strict), "--out", tmp_path / "out")
+	quick = {"energy": False}
+	code, _, errors = runHere(configure(tmp_path, consolidation=strict, output=quick), "--out", tmp_path / "out")
 	assert code == 1
 	assert "consolidation.maxSteps = 400: not at rest after 400 steps" in errors and "; fix: " in errors
 	assert (tmp_path / "out" / "checkpoint.json").is_file()
-	path = configure(tmp_path, consolidation={**strict, "maxSteps": 600})
+	path = configure(tmp_path, consolidation={**strict, "maxSteps": 600}, output=quick)
 	code, said, errors = runHere(path, "--out", tmp_path / "out", "--resume")
 	assert code == 1 and "not at rest after 600 steps" in errors and "resumed in consolidation" in said
+	table = records.read(tmp_path / "out" / "records.csv")
+	energies = {name for name in table if name.startswith("energy_")} | {"work_boundary"}
+	assert len(energies) == 7 and all(numpy.isnan(table[name]).all() for name in energies)
+	assert all(numpy.isfinite(table[name]).all() for name in set(table) - energies - {"stage"})
 
 
 BAD = [
@@ -218,8 +227,9 @@ def test_grainOutsideIsSeen(whole, O):
 
 
 def test_frictionAfterConsolidation(whole, O):
-	"""Contacts made with the consolidation's friction have the test's own in shear; those of the membrane have none."""
+	"""Contacts made with the consolidation's friction have the test's own in shear, those of the membrane have none; all are PFC's by modulus."""
 	from hexmembrane import scene, stages
+	from yade import Sphere
 
 	stages.load(whole[0] / "consolidated.yade.gz")
 	handles = scene.Scene()
@@ -229,6 +239,9 @@ def test_frictionAfterConsolidation(whole, O):
 		ids = {contact.id1, contact.id2}
 		kind = "grains" if ids <= grains else "membrane" if ids & membrane else "platens"
 		found[kind].add(round(contact.phys.tangensOfFrictionAngle, 12))
+		r = [O.bodies[i].shape.radius for i in ids if isinstance(O.bodies[i].shape, Sphere)]
+		kn = math.pi * 2e7 * (min(r) ** 2 / sum(r) if len(r) == 2 else r[0])
+		assert contact.phys.kn == pytest.approx(kn, rel=1e-12) and contact.phys.ks == pytest.approx(kn / 3, rel=1e-12)
 	assert found == {"grains": {0.5}, "membrane": {0.0}, "platens": {0.3}}
 	handles.setFriction(0.1)
 	assert {round(c.phys.tangensOfFrictionAngle, 12) for c in O.interactions} == {0.1, 0.0}
