@@ -12,7 +12,7 @@ import yade
 from scipy.spatial import cKDTree
 from yade import O
 
-from hexmembrane import timestep, vtk
+from hexmembrane import correction, timestep, vtk
 from hexmembrane.lateral import Parts, only
 
 #: Bit of the membrane's spheres in a body's mask.
@@ -41,10 +41,6 @@ def generate(config, particleRadius, smallest):
 		rotations=timestep.bondStiffness(given.young, given.thickness, given.poisson)[1] > 0,
 	)
 	membrane.generate()
-	for k, group in enumerate(membrane.groups):
-		if group == 1:
-			# moved, not accelerated: else NewtonIntegrator books a damping that does not take place
-			O.bodies[membrane.ids[k]].state.isDamped = False
 	return membrane
 
 
@@ -146,6 +142,9 @@ class FlexibleMembrane:
 
 	def brokenBonds(self):
 		return self.bonds.brokenCount
+
+	def carried(self, bottom, top):
+		return correction.terms(self.membrane, self.bonds, self.pressing, bottom, top)
 
 	def outside(self, points):
 		"""Which points are outside.

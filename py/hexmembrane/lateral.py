@@ -14,6 +14,7 @@ type name. Its instances are the handles that stages, records and frames use, wi
 ``pressedArea(bottom, top)``  area that the pressure acts on [m2]
 ``transmitted(group)``        pressure that arrives at the soil [Pa]; 0: all, 2: beside the platens, 3: main body
 ``brokenBonds()``             their number
+``carried(bottom, top)``      what the boundary itself carries, columns of :mod:`hexmembrane.correction`
 ``outside(points)``           which points are outside, as booleans
 ``addStiffness(stiffness)``   add to (bodies,) stiffnesses [N/m] what contacts do not show
 ``writeFrame(path, start)``   its surface as VTK; ``start``: the :class:`hexmembrane.measure.Reference` of the stage

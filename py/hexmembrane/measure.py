@@ -7,7 +7,7 @@ import math
 import numpy
 from yade import O, utils
 
-from hexmembrane import energy
+from hexmembrane import correction, energy
 
 
 @dataclasses.dataclass
@@ -87,6 +87,7 @@ def row(scene, grains, reference, stage, elapsed):
 	speed = scene.approachSpeed()
 	inertial = speed / height * grains.meanDiameter * math.sqrt(grains.density / pressure) if pressure > 0 else 0.0
 	energies = energy.measured()
+	carried = lateral.carried(bottom, top)
 	dz, dr = height / reference.height - 1, radius / reference.radius - 1
 	return {
 		"stage": stage,
@@ -114,6 +115,8 @@ def row(scene, grains, reference, stage, elapsed):
 		"bonds_broken": lateral.brokenBonds(),
 		"elapsed": round(elapsed, 2),
 		**_energies(energies, reference.energies),
+		**carried,
+		"q_corrected": correction.corrected(sum(forces) / 2, pressure, volume / height, carried),
 	}
 
 

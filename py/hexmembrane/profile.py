@@ -95,12 +95,12 @@ def contacts(grains):
 def measure(scene, grains, count=16):
 	"""The :class:`Profile` of the scene as it stands, from the contacts of the last step.
 
-	:param scene: handles, :class:`hexmembrane.scene.Scene`. :param grains: ids of the grains. :param count: slices, >= 1.
+	:param scene: handles, :class:`hexmembrane.scene.Scene`, of a test in a flexible membrane. :param grains: ids of the grains. :param count: slices, >= 1.
 	:raises ValueError: no slice.
 	"""
 	if count < 1:
 		raise ValueError(f"profile.count = {count}: no slice; fix: 1 or more")
-	membrane = scene.membrane
+	membrane = scene.lateral.membrane
 	bottom, top = scene.faces()
 	edges = numpy.linspace(bottom, top, count + 1)
 	volume = numpy.array([membrane.enclosedVolume(low, high) for low, high in zip(edges, edges[1:])])

@@ -94,6 +94,29 @@ COLUMNS = (
 		"(work - change of the stored energy - dissipated energy, since the stage began) over the larger of that work and the energy stored now",
 		True,
 	),
+	Column(
+		"pressure_axial",
+		"N",
+		"P, axial parts of the applied confining pressure's forces on each half of the membrane, towards mid-height; 0 with a rigid wall",
+	),
+	Column(
+		"membrane_axial_mid",
+		"N",
+		"axial pull of the membrane through the plane at mid-height, from the forces of its bonds; tension positive; 0 with a rigid wall",
+	),
+	Column("membrane_axial_end", "N", "the same just inside the O-rings, mean of both ends"),
+	Column(
+		"sigma3_membrane",
+		"Pa",
+		"part of the membrane's own tension in what its main body transmits: forces of the bonds towards the axis over the same "
+		"area; inwards positive; 0 with a rigid wall",
+	),
+	Column(
+		"q_corrected",
+		"Pa",
+		"(F + pressure_axial + membrane_axial_mid - membrane_axial_end)/Am - (sigma3_applied + sigma3_membrane): q without the membrane, "
+		"by the forces that act; q with a rigid wall, whose friction stays in it; compression positive",
+	),
 )
 
 _TEXT = ("stage",)

@@ -7,7 +7,7 @@ import numpy
 import yade
 from yade import O
 
-from hexmembrane import vtk
+from hexmembrane import correction, vtk
 from hexmembrane.lateral import Parts, only
 
 #: Platens' radius over the specimen's: they reach under the wall's rim, so that a specimen that widens stays between them.
@@ -88,6 +88,9 @@ class RigidWall:
 
 	def brokenBonds(self):
 		return 0
+
+	def carried(self, _bottom, _top):
+		return dict(correction.NONE)
 
 	def outside(self, points):
 		return numpy.hypot(points[:, 0] - self.axis[0], points[:, 1] - self.axis[1]) >= self.shape.radius

@@ -104,9 +104,11 @@ def test_termsOfACylinderPulledLengthwise(O):
 		x = O.bodies[i].state.pos
 		O.bodies[i].state.pos = (x[0], x[1], x[2] * (1 + strain))
 	bonds = yade.MembraneBonds(membrane=m, kn=kn)
-	O.engines = [yade.ForceResetter(), bonds]
+	pressing = yade.MembranePressure(membrane=m, pressure=P)
+	O.engines = [yade.ForceResetter(), bonds, pressing]
 	O.step()
-	found = correction.terms(m, bonds, 0, HEIGHT)
+	found = correction.terms(m, bonds, pressing, 0, HEIGHT)
+	assert abs(found["pressure_axial"]) < 1e-3 * P * math.pi * m.innerRadius**2  # a straight tube has no axial push
 	along = 2 / math.sqrt(3) * kn / (1 - 1 / 9) * strain
 	assert found["membrane_axial_mid"] == pytest.approx(2 * math.pi * m.centreRadius * along, rel=2e-3)
 	assert found["membrane_axial_end"] == pytest.approx(found["membrane_axial_mid"], rel=1e-9)

@@ -33,6 +33,8 @@ def test_records(whole):
 	assert table["volume"] == pytest.approx(math.pi * r**2 * h, rel=1e-12)
 	assert table["membrane_area"] == pytest.approx(2 * math.pi * r * h, rel=1e-12)
 	assert (table["bonds_broken"] == 0).all() and (table["energy_membrane"] == 0).all()
+	assert all((table[name] == 0).all() for name in ("pressure_axial", "membrane_axial_mid", "membrane_axial_end", "sigma3_membrane"))
+	assert table["q_corrected"] == pytest.approx(table["q"], rel=1e-9, abs=1e-6)
 	# The definition of q: mean platen force over the wall's section, less the target.
 	mean = (table["platen_force_bottom"] + table["platen_force_top"]) / 2
 	assert table["q"] == pytest.approx(mean / (math.pi * r**2) - table["sigma3_applied"], rel=1e-9, abs=1e-3)

@@ -9,7 +9,7 @@ import time
 import numpy
 import pytest
 import yaml
-from hexmembrane import records, vtk
+from hexmembrane import profile, records, scene, stages, vtk
 from PIL import Image
 from tinyTest import command, configure, environment, runOutside
 
@@ -46,6 +46,60 @@ def test_records(whole):
 	# 1 - n is the solid volume over V.
 	solid = (1 - table["porosity"]) * table["volume"]
 	assert abs(solid / solid[0] - 1).max() < 1e-12
+
+
+def test_whatTheMembraneCarries(whole):
+	table = records.read(whole[0] / "records.csv")
+	force = (table["platen_force_bottom"] + table["platen_force_top"]) / 2
+	force = force + table["pressure_axial"] + table["membrane_axial_mid"] - table["membrane_axial_end"]
+	inside = table["sigma3_applied"] + table["sigma3_membrane"]
+	assert table["q_corrected"] == pytest.approx(force * table["height"] / table["volume"] - inside, rel=1e-9, abs=1e-3)
+	shear = numpy.array([stage == "shear" for stage in table["stage"]])
+	# A stiff membrane round a specimen that has become thinner: it carries some of the pressure, and the rest is what arrives.
+	assert (table["sigma3_membrane"][shear] < -500).all()
+	assert abs(table["sigma3_transmitted_group3"] / inside - 1)[shear].max() < 0.01
+	assert abs(table["membrane_axial_mid"][shear]).min() > 0 and abs(table["membrane_axial_end"][shear]).min() > 0
+
+
+def test_stressAlongTheHeight(whole, O):
+	out, _ = whole
+	last = {name: column[-1] for name, column in records.read(out / "records.csv").items()}
+	stages.load(out / "sheared.yade.gz")
+	O.step()
+	handles = scene.Scene()
+	found, one = (profile.measure(handles, handles.grainIds(), count) for count in (6, 1))
+	assert found.edges[0] == 0 and found.edges[-1] == pytest.approx(found.height) and len(found.middle) == 6
+	for name in ("axial", "radial"):
+		assert (getattr(found, name) * found.volume).sum() == pytest.approx(float(getattr(one, name)[0] * one.volume[0]), rel=1e-9)
+	# At mid-height the soil carries what the balance of forces on half the specimen says, but for contacts of the membrane across the cut.
+	balance = last["q_corrected"] + last["sigma3_applied"] + last["sigma3_membrane"]
+	assert found.axial[2:4].mean() == pytest.approx(balance, rel=0.1)
+	main = numpy.array(handles.lateral.membrane.groups)[:: handles.lateral.membrane.perRing] == 3
+	assert found.rowPressure[main].mean() == pytest.approx(last["sigma3_transmitted_group3"], rel=0.02)
+	assert found.radial[1:5].mean() == pytest.approx(last["sigma3_transmitted_group3"], rel=0.15)
+	with pytest.raises(ValueError, match="profile.count = 0"):
+		profile.measure(handles, handles.grainIds(), 0)
+
+
+def test_forcesThroughMidHeight(whole, O):
+	"""F + P + T_mid - T_end, as recorded, is the sum of the contact forces through the cut: that of the specimen at rest after consolidation."""
+	stages.load(whole[0] / "consolidated.yade.gz")
+	for drive in scene.Scene().bottom, scene.Scene().top:
+		drive.velocity = 0
+	for _ in range(3000):
+		O.step()
+	handles = scene.Scene()
+	bottom, top = handles.faces()
+	middle, platens = (bottom + top) / 2, {handles.bottom.platen, handles.top.platen}
+	cut = 0
+	for contact in O.interactions:
+		z = [O.bodies[i].state.pos[2] for i in (contact.id1, contact.id2)]
+		if not platens & {contact.id1, contact.id2} and (z[0] < middle) != (z[1] < middle):
+			force = (contact.phys.normalForce + contact.phys.shearForce)[2]  # on the second
+			cut += force if z[0] < middle else -force
+	found = handles.lateral.carried(bottom, top)
+	force = (handles.bottom.force + handles.top.force) / 2
+	assert cut == pytest.approx(force + found["pressure_axial"] + found["membrane_axial_mid"] - found["membrane_axial_end"], rel=1e-2)
 
 
 def test_output(whole):
