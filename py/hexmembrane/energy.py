@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The energies of a scene with ``O.trackEnergy``: what is stored, what was dissipated, what the boundaries have put in, and whether it adds up.
 
-Positions, contact forces and the energies made of them belong to one instant. Leapfrog's velocities lie half a step before and after it:
-the kinetic energy is the mean of both, and the local damping of a whole step is booked with the velocity before it. What is left of the
-balance is of first order in the step and small where little is kinetic.
+Positions, contact forces and the energies made of them belong to one instant. The kinetic energy, and the velocity with which YADE books the
+local damping of a whole step, belong to half a step before. What is left of the balance is of first order in the step and small where
+little is kinetic.
 """
 
-from yade import O, utils
+from yade import O
 
 #: YADE's names of the work that comes in, with a minus sign there, as YADE has it with gravity.
 WORK = ("platenWork", "pressureWork", "radialServoWork", "oRingWork", "wallWork")
@@ -25,7 +25,7 @@ def measured():
 	return {
 		"elastic": total("elastPotential"),
 		"membrane": total("elastMembrane"),
-		"kinetic": (total("kinetic") + utils.kineticEnergy()) / 2 if found else 0.0,
+		"kinetic": total("kinetic"),
 		"friction": total("plastDissip", "rollDissip"),
 		"damping": total("nonviscDamp"),
 		"work": -total(*WORK),

@@ -79,7 +79,7 @@ COLUMNS = (
 	Column("elapsed", "s", "wall clock spent on the test so far, set-up of a resumed run not counted"),
 	Column("energy_elastic", "J", "elastic energy of the contacts; this and all energies: nan with output.energy: false", True),
 	Column("energy_membrane", "J", "elastic energy of the membrane's bonds, 0 with a rigid wall", True),
-	Column("energy_kinetic", "J", "kinetic energy, mean of the half steps before and after", True),
+	Column("energy_kinetic", "J", "kinetic energy, half a step before", True),
 	Column("energy_friction", "J", "dissipated by sliding and rolling since the stage began", True),
 	Column("energy_damping", "J", "dissipated by the local damping since the stage began", True),
 	Column(

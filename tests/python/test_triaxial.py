@@ -102,6 +102,20 @@ def test_forcesThroughMidHeight(whole, O):
 	assert cut == pytest.approx(force + found["pressure_axial"] + found["membrane_axial_mid"] - found["membrane_axial_end"], rel=1e-2)
 
 
+def test_energyBalance(whole):
+	"""What platens, pressure and O-rings put in is stored or dissipated: through shear to 1e-4 of the larger of work and stored energy.
+
+	Left is half a step between positions and the velocity that local damping is booked with, of first order in the step. It shows most where
+	the membrane meets the grains: there damping takes half of the work; of all consolidation it is below 5e-3.
+	"""
+	table = records.read(whole[0] / "records.csv")
+	first = table["stage"].index("shear")
+	assert abs(table["energy_error"][first:]).max() < 1e-4 and abs(table["energy_error"][first - 1]) < 5e-3
+	for name in ("elastic", "membrane", "kinetic"):
+		assert (table[f"energy_{name}"] > 0).all(), name
+	assert table["work_boundary"][-1] > 0.1 and table["energy_friction"][-1] > 0.01
+
+
 def test_output(whole):
 	out, said = whole
 	assert {"config.yaml", "records.csv", "test.png", "consolidated.yade.gz", "sheared.yade.gz", "vtk"} <= {p.name for p in out.iterdir()}
