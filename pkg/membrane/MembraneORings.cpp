@@ -26,7 +26,8 @@ void MembraneORings::requireOrder() const
 	for (const auto& engine : scene->engines) {
 		if (dynamic_cast<const NewtonIntegrator*>(engine.get())) integrated = true;
 		if (engine.get() == this && integrated)
-			throw std::runtime_error("MembraneORings: it comes after NewtonIntegrator in O.engines; fix: put it before, after the engines that add forces");
+			throw std::runtime_error(
+			        "MembraneORings: it comes after NewtonIntegrator in O.engines; fix: put it before, after the engines that add forces");
 	}
 }
 
