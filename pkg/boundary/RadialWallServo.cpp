@@ -107,7 +107,7 @@ void RadialWallServo::advance(Real force, Real contactStiffness)
 	CylinderWall& shape = requireWall();
 	requireSettings();
 	stiffness = contactStiffness;
-	const Real area = 2 * Mathr::PI * shape.radius * specimenHeight();
+	const Real area = 2 * M_PI * shape.radius * specimenHeight();
 	radialStress = force / area;
 	if (!math::isnan(lastRadius)) {
 		const Real done = 0.5 * (lastForce + force) * (lastRadius - shape.radius);

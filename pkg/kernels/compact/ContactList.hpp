@@ -1,0 +1,58 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "Flat.hpp"
+#include "kernels/CellGrid.hpp"
+
+#include <functional>
+#include <vector>
+
+namespace hexmembrane {
+
+/// Contacts of spheres with spheres by the full law, over a neighbour list that holds each pair once, with the first index the lower.
+///
+/// With one thread loads are added straight to both spheres. With several, each thread has a run of first indices with about the same number of pairs;
+/// what falls on spheres beyond its run goes to a spill of its own, and the owner adds the spills in the order of the threads: the same bits for the same
+/// number of threads.
+class ContactList {
+public:
+	using LawOfPair = std::function<ContactLaw(int, int)>;
+
+	/// Takes over a new list. Memories of contacts that touch in the old list go to their pairs in the new one (the others are dropped: a touching pair is
+	/// always in a new list); `law` makes the parameters of all others.
+	/// \param newIndex where each sphere of the old numbering stands in the new one
+	void rebuild(NearPairs found, const std::vector<int>& newIndex, const LawOfPair& law);
+	/// Parameters anew for all pairs (a material has changed); memories and bonds stay.
+	void renewLaws(const LawOfPair& law);
+
+	/// One step. `threads` >= 1. \param energies whether SweepSums are wanted
+	SweepSums sweep(const std::vector<Place>& places, const std::vector<Motion>& motions, std::vector<Load>& loads, double dt, int threads);
+
+	/// Elastic energy of all contacts (J).
+	double energy(const std::vector<Place>& places) const;
+	/// Calls visit(i, j, memory, bits) for every touching pair.
+	template <typename Visit>
+	void forEachTouching(Visit&& visit) const
+	{
+		for (std::size_t i = 0; i + 1 < pairs.start.size(); ++i)
+			for (int p = pairs.start[i]; p < pairs.start[i + 1]; ++p)
+				if (bits[p]) visit(int(i), pairs.other[p], memories[p], bits[p]);
+	}
+	/// Puts a memory (with its law) into the list. \return false when the pair is not in it
+	bool restore(int i, int j, const ContactMemory& memory, unsigned char bit);
+
+	int size() const { return int(pairs.other.size()); }
+	const NearPairs& list() const { return pairs; }
+
+private:
+	int find(int i, int j) const;
+	SweepSums sweepRun(int from, int to, int owned, const std::vector<Place>& places, const std::vector<Motion>& motions, Load* loads, Load* spill,
+	                   double dt);
+
+	NearPairs pairs;
+	std::vector<ContactMemory> memories;
+	std::vector<unsigned char> bits;
+	std::vector<std::vector<Load>> spills; ///< one a thread
+};
+
+} // namespace hexmembrane

@@ -1,0 +1,35 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "FlatAssembly.hpp"
+
+namespace hexmembrane {
+
+/// Critical time step of central differences, 2/omega, with omega the highest frequency of the springs that are there now: every touching contact with its
+/// normal, shear and rolling spring (as if none were sliding), and the bonds that are added. Largest eigenvalue of M^-1 K by power iteration from a fixed
+/// start, matrix-free; K is symmetric and positive, so the iterates rise to it from below. Geometric stiffness (forces times rotations) is left out.
+class CriticalStep {
+public:
+	explicit CriticalStep(const FlatAssembly& flat);
+	/// Adds a bond of two membrane particles (local indices), `branch` from the first to the second; ks acts at its middle.
+	void addBond(int first, int second, const Vec3& branch, double kn, double ks);
+	/// \return the step (s), infinite without springs \param tolerance relative change of the eigenvalue at which to stop
+	double compute(double tolerance = 1e-4, int most = 2000) const;
+
+private:
+	struct Spring {
+		int i, j; ///< j < 0: a boundary
+		Vec3 normal, arm1, arm2;
+		double kn, ks, kr;
+	};
+	void add(int i, int j, const Vec3& normal, const Vec3& arm1, const Vec3& arm2, double kn, double ks, double kr)
+	{
+		springs.push_back({i, j, normal, arm1, arm2, kn, ks, kr});
+	}
+
+	std::vector<Spring> springs;
+	std::vector<double> inverseMass, inverseInertia; ///< 0 for what does not move
+	int grains;
+};
+
+} // namespace hexmembrane

@@ -1,0 +1,276 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "FlatAssembly.hpp"
+
+#include "kernels/Check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace hexmembrane {
+
+void FlatAssembly::setSkin(double skin)
+{
+	requirePositive("CompactLoop.skin", skin, "m");
+	if (skin != gap) listed.clear(); // lists are made anew; what contacts remember moves over
+	gap = skin;
+}
+
+void FlatAssembly::setSpheres(const std::vector<Sphere>& all, int count)
+{
+	grainCount = count;
+	const auto fill = [&](auto& field, auto&& value) {
+		field.clear();
+		for (const Sphere& s : all) field.push_back(value(s));
+	};
+	fill(id, [](const Sphere& s) { return s.id; });
+	fill(places, [](const Sphere& s) { return s.place; });
+	fill(motions, [](const Sphere& s) { return s.motion; });
+	fill(mass, [](const Sphere& s) { return s.mass; });
+	fill(inertia, [](const Sphere& s) { return s.inertia; });
+	fill(material, [](const Sphere& s) { return s.material; });
+	fill(fixed, [](const Sphere& s) { return s.fixed; });
+	turned.assign(count, Vec3::Zero());
+	outside.clear();
+	contacts = {};
+	smooth = {};
+	boundaryContacts.clear();
+	boundaryContacts.resize(boundaries.size());
+	listed.clear();
+	travelled = 0;
+}
+
+void FlatAssembly::setMaterials(const std::vector<ContactMaterial>& table)
+{
+	if (table == materials) return;
+	const bool first = materials.empty();
+	materials = table;
+	if (first || listed.empty()) return;
+	// friction may have come or gone, and with it what a list holds
+	std::vector<int> same(places.size());
+	std::iota(same.begin(), same.end(), 0);
+	buildLists(same);
+	contacts.renewLaws([this](int i, int j) { return lawOf(i, j); });
+	for (std::size_t b = 0; b < boundaries.size(); ++b)
+		boundaryContacts[b].renewLaws([&](int i) { return boundaryLaw(materials[boundaries[b].material], materials[material[i]], places[i].radius); });
+}
+
+bool FlatAssembly::listsHold()
+{
+	if (listed.size() != places.size() || listedBoundaries.size() != boundaries.size()) return false;
+	if (travelled < 0.5 * gap) return true;
+	// the bound adds the fastest of every step, whoever it was: look how far each has really come
+	double furthest = 0;
+	const long count = long(places.size());
+#pragma omp parallel for schedule(static) reduction(max : furthest)
+	for (long i = 0; i < count; ++i) furthest = std::max(furthest, (places[i].centre - listed[i]).squaredNorm());
+	furthest = std::sqrt(furthest);
+	for (std::size_t b = 0; b < boundaries.size(); ++b) {
+		const auto &now = boundaries[b].solid, &then = listedBoundaries[b].solid;
+		furthest = std::max(furthest, (now.centre - then.centre).norm() + std::abs(now.radius - then.radius));
+	}
+	travelled = furthest;
+	// with little left the next measure would be due at once
+	return travelled < 0.4 * gap;
+}
+
+void FlatAssembly::sortGrains(std::vector<int>& newIndex)
+{
+	std::vector<Vec3> centres(grainCount);
+	Vec3 low = Vec3::Constant(1e300), high = -low;
+	double largest = 0;
+	for (int i = 0; i < grainCount; ++i) {
+		centres[i] = places[i].centre;
+		low = low.cwiseMin(centres[i]);
+		high = high.cwiseMax(centres[i]);
+		largest = std::max(largest, places[i].radius);
+	}
+	newIndex.resize(places.size());
+	std::iota(newIndex.begin(), newIndex.end(), 0);
+	if (grainCount == 0) return;
+	// no finer than one cell a grain, as findNearPairs
+	const double spacing = std::cbrt(std::max((high - low).prod(), 0.) / grainCount);
+	CellGrid grid(low, high, std::max(2 * largest + gap, spacing));
+	grid.fill(centres);
+	const std::vector<int>& order = grid.order();
+	for (int i = 0; i < grainCount; ++i) newIndex[order[i]] = i;
+	const auto permute = [&](auto& field) {
+		if (field.empty()) return;
+		auto before = field;
+		for (int i = 0; i < grainCount; ++i) field[i] = before[order[i]];
+	};
+	permute(id);
+	permute(places);
+	permute(motions);
+	permute(mass);
+	permute(inertia);
+	permute(material);
+	permute(fixed);
+	permute(outside);
+	permute(turned);
+}
+
+void FlatAssembly::findPairs(NearPairs& general, std::vector<NormalList::Pair>& frictionless) const
+{
+	const int all = spheres();
+	std::vector<Vec3> centres(listed.begin(), listed.begin() + grainCount);
+	std::vector<double> radii(grainCount);
+	Vec3 low = Vec3::Constant(1e300), high = -low;
+	double largest = 0, largestParticle = 0;
+	for (int i = 0; i < grainCount; ++i) {
+		radii[i] = places[i].radius;
+		largest = std::max(largest, radii[i]);
+		low = low.cwiseMin(centres[i]);
+		high = high.cwiseMax(centres[i]);
+	}
+	if (grainCount > 0) general = findNearPairs(centres, radii, gap, low, high);
+	general.start.resize(all + 1, int(general.other.size()));
+	if (all == grainCount) return;
+
+	for (int m = grainCount; m < all; ++m) largestParticle = std::max(largestParticle, places[m].radius);
+	std::vector<std::vector<int>> extra(all); // pairs with particles that need memory
+	if (grainCount > 0) {
+		CellGrid grid(low, high, largest + std::max(largest, largestParticle) + gap);
+		grid.fill(centres);
+		std::vector<int> near;
+		for (int m = grainCount; m < all; ++m) {
+			near.clear();
+			grid.forEachNear(listed[m], [&](int i) {
+				const double reach = radii[i] + places[m].radius + gap;
+				if ((listed[m] - centres[i]).squaredNorm() < reach * reach) near.push_back(i);
+			});
+			std::sort(near.begin(), near.end());
+			for (int i : near)
+				if (isSmooth(i, m))
+					frictionless.push_back({i, m});
+				else
+					extra[i].push_back(m);
+		}
+	}
+	if (bondedNeighbours) {
+		std::vector<Vec3> particles(listed.begin() + grainCount, listed.end());
+		std::vector<double> sizes;
+		Vec3 least = particles[0], most = particles[0];
+		for (int m = grainCount; m < all; ++m) {
+			sizes.push_back(places[m].radius);
+			least = least.cwiseMin(listed[m]);
+			most = most.cwiseMax(listed[m]);
+		}
+		const NearPairs own = findNearPairs(particles, sizes, gap, least, most);
+		for (int a = 0; a + 1 < int(own.start.size()); ++a)
+			for (int p = own.start[a]; p < own.start[a + 1]; ++p)
+				if (!bondedNeighbours(a, own.other[p])) extra[grainCount + a].push_back(grainCount + own.other[p]);
+	}
+	// particles' indices are above all grains': appended to a row they leave it ascending
+	NearPairs merged;
+	merged.start.assign(1, 0);
+	for (int i = 0; i < all; ++i) {
+		merged.other.insert(merged.other.end(), general.other.begin() + general.start[i], general.other.begin() + general.start[i + 1]);
+		merged.other.insert(merged.other.end(), extra[i].begin(), extra[i].end());
+		merged.start.push_back(int(merged.other.size()));
+	}
+	general = std::move(merged);
+}
+
+void FlatAssembly::buildLists(const std::vector<int>& newIndex)
+{
+	NearPairs general;
+	std::vector<NormalList::Pair> frictionless;
+	findPairs(general, frictionless);
+	contacts.rebuild(std::move(general), newIndex, [this](int i, int j) { return lawOf(i, j); });
+	smooth.rebuild(frictionless, grainCount, spheres() - grainCount, [this](int i, int j) { return lawOf(i, j).kn; });
+	boundaryContacts.resize(boundaries.size());
+	for (std::size_t b = 0; b < boundaries.size(); ++b) {
+		std::vector<int> near;
+		for (int i = 0; i < spheres(); ++i)
+			if (listedBoundaries[b].near({listed[i], places[i].radius}, gap)) near.push_back(i);
+		boundaryContacts[b].rebuild(std::move(near), newIndex,
+		                            [&](int i) { return boundaryLaw(materials[boundaries[b].material], materials[material[i]], places[i].radius); });
+	}
+}
+
+void FlatAssembly::makeLists()
+{
+	std::vector<int> newIndex;
+	sortGrains(newIndex);
+	listed.resize(places.size());
+	for (std::size_t i = 0; i < places.size(); ++i) listed[i] = places[i].centre;
+	listedBoundaries = boundaries;
+	travelled = 0;
+	buildLists(newIndex);
+	++made;
+}
+
+void FlatAssembly::computeLoads(double dt, int threads)
+{
+	if (outside.empty())
+		loads.assign(places.size(), noLoad());
+	else
+		loads = outside;
+	sums += contacts.sweep(places, motions, loads, dt, threads);
+	smooth.sweep(places, loads, onParticle, threads);
+	onBoundary.resize(boundaries.size());
+	for (std::size_t b = 0; b < boundaries.size(); ++b) onBoundary[b] = boundaryContacts[b].sweep(boundaries[b], places, motions, loads, dt, threads, sums);
+}
+
+double FlatAssembly::elasticEnergy() const
+{
+	double sum = contacts.energy(places) + smooth.energy(places);
+	for (std::size_t b = 0; b < boundaries.size(); ++b) sum += boundaryContacts[b].energy(boundaries[b], places);
+	return sum;
+}
+
+namespace {
+
+/// YADE's second-order form of Cundall's damping: judged by the velocity in the middle of the step to come.
+inline Vec3 damped(const Vec3& a, const Vec3& v, double dt, double share)
+{
+	Vec3 out;
+	for (int axis = 0; axis < 3; ++axis) {
+		const double power = a[axis] * (v[axis] + 0.5 * dt * a[axis]);
+		out[axis] = a[axis] * (1 - share * ((power > 0) - (power < 0)));
+	}
+	return out;
+}
+
+inline double absoluteDot(const Vec3& a, const Vec3& b) { return a.cwiseAbs().dot(b.cwiseAbs()); }
+
+} // namespace
+
+int FlatAssembly::moveGrains(double dt, double damping, bool energies, int threads)
+{
+	const double limit = 0.25 * gap * gap / (dt * dt);
+	double fastest2 = 0;
+	int lost = grainCount;
+	std::vector<double> dampedPart(threads, 0), kineticPart(threads, 0); // summed in the order of the threads
+#pragma omp parallel for schedule(static, 1) num_threads(threads) if (threads > 1) reduction(max : fastest2) reduction(min : lost)
+	for (int t = 0; t < threads; ++t)
+		for (int i = grainCount * long(t) / threads; i < grainCount * long(t + 1) / threads; ++i) {
+			Motion& motion = motions[i];
+			const Load& load = loads[i];
+			if (energies) {
+				kineticPart[t] += 0.5 * mass[i] * motion.velocity.squaredNorm() + 0.5 * inertia[i] * motion.spin.squaredNorm();
+				if (!fixed[i])
+					dampedPart[t] += damping * dt * (absoluteDot(motion.velocity, load.force) + absoluteDot(motion.spin, load.torque));
+			}
+			if (!fixed[i]) {
+				motion.velocity += dt * damped(load.force / mass[i], motion.velocity, dt, damping);
+				motion.spin += dt * damped(load.torque / inertia[i], motion.spin, dt, damping);
+			}
+			const Vec3 turn = dt * motion.spin;
+			places[i].centre += dt * motion.velocity;
+			turned[i] += turn;
+			const double speed2 = motion.velocity.squaredNorm();
+			if (!(speed2 < limit) || !std::isfinite(turn.sum())) lost = std::min(lost, i);
+			fastest2 = std::max(fastest2, speed2);
+		}
+	for (int t = 0; t < threads; ++t) dampedWork += dampedPart[t];
+	if (energies) {
+		kinetic = 0;
+		for (int t = 0; t < threads; ++t) kinetic += kineticPart[t];
+	}
+	noteSpeed(std::sqrt(fastest2), dt);
+	return lost < grainCount ? id[lost] : -1;
+}
+
+} // namespace hexmembrane

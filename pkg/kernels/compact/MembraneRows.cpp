@@ -1,0 +1,169 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "MembraneRows.hpp"
+
+#include "kernels/Simd.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hexmembrane {
+
+MembraneRows::MembraneRows(const HexStencil& s, int rows) : velocity(s.perRing, s.rings), stencil(s), oRings(rows), total(s.perRing, s.rings) {}
+
+namespace {
+
+/// One coordinate of a row: v += dt damped(f/m), x += dt v, and the sum of f (v before + v after) of the extra force `term`.
+HEXMEMBRANE_WIDEST double moveRow(int n, double dt, double damping, double mass, const double* __restrict f, const double* __restrict term,
+                                  double* __restrict v, double* __restrict x)
+{
+	double power = 0;
+#pragma omp simd reduction(+ : power)
+	for (int i = 0; i < n; ++i) {
+		const double a = f[i] / mass, before = v[i];
+		const double p = a * (before + 0.5 * dt * a);
+		const double sign = (p > 0 ? 1. : 0.) - (p < 0 ? 1. : 0.);
+		const double after = before + dt * (a * (1 - damping * sign));
+		v[i] = after;
+		x[i] += dt * after;
+		power += term[i] * (before + after);
+	}
+	return power;
+}
+
+HEXMEMBRANE_WIDEST void addRow(int n, const double* __restrict a, double* __restrict sum)
+{
+#pragma omp simd
+	for (int i = 0; i < n; ++i) sum[i] += a[i];
+}
+
+HEXMEMBRANE_WIDEST double dot(int n, const double* a, const double* b)
+{
+	double sum = 0;
+#pragma omp simd reduction(+ : sum)
+	for (int i = 0; i < n; ++i) sum += a[i] * b[i];
+	return sum;
+}
+
+HEXMEMBRANE_WIDEST double absoluteDot(int n, const double* a, const double* b)
+{
+	double sum = 0;
+#pragma omp simd reduction(+ : sum)
+	for (int i = 0; i < n; ++i) sum += std::abs(a[i] * b[i]);
+	return sum;
+}
+
+/// Largest of the squared speeds; NaN when one is not finite.
+HEXMEMBRANE_WIDEST double fastestSquared(int n, const double* x, const double* y, const double* z)
+{
+	double most = 0, all = 0;
+#pragma omp simd reduction(max : most) reduction(+ : all)
+	for (int i = 0; i < n; ++i) {
+		const double square = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+		all += square;
+		most = std::max(most, square);
+	}
+	return all - all == 0 ? most : all - all;
+}
+
+} // namespace
+
+int MembraneRows::move(double dt, double damping, double limit, const RingField& bonds, std::vector<Term>& terms, const std::vector<Vec3>& onParticle,
+                       const Load* loads, RingField& position, Place* places, Motion* motions, bool energies, int threads)
+{
+	const int n = stencil.perRing, rings = stencil.rings;
+	// one slot a ring, summed in their order: the same bits for any number of threads
+	std::vector<double> square(rings), kineticPart(rings, 0.), dampedPart(rings, 0.), oRingPart(rings, 0.);
+	std::vector<std::vector<double>> workPart(terms.size(), std::vector<double>(rings, 0.));
+#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
+	for (int k = 0; k < rings; ++k) {
+		for (int i = 0; i < n; ++i) {
+			const int m = k * n + i;
+			total.set(k, i, onParticle[m] + loads[m].force);
+		}
+		std::array<const double*, 3> worked{};
+		int workedBy = -1;
+		for (int a = 0; a < 3; ++a) addRow(n, bonds.row(a, k), total.row(a, k));
+		for (std::size_t t = 0; t < terms.size(); ++t) {
+			if (!terms[t].force || k < terms[t].first || k > terms[t].last) continue;
+			workedBy = int(t);
+			for (int a = 0; a < 3; ++a) {
+				worked[a] = terms[t].force->row(a, k);
+				addRow(n, worked[a], total.row(a, k));
+			}
+		}
+		if (energies)
+			for (int a = 0; a < 3; ++a) {
+				kineticPart[k] += 0.5 * mass * dot(n, velocity.row(a, k), velocity.row(a, k));
+				if (!isORing(k)) dampedPart[k] += damping * dt * absoluteDot(n, velocity.row(a, k), total.row(a, k));
+			}
+		if (isORing(k)) {
+			const Vec3& told = k < oRings ? below : above;
+			for (int a = 0; a < 3; ++a) {
+				double* v = velocity.row(a, k);
+				double* x = position.row(a, k);
+				const double* f = total.row(a, k);
+				for (int i = 0; i < n; ++i) {
+					oRingPart[k] -= 0.5 * dt * f[i] * (v[i] + told[a]); // the O-ring holds against what acts
+					v[i] = told[a];
+					x[i] += dt * told[a];
+				}
+			}
+		} else
+			for (int a = 0; a < 3; ++a) {
+				const double* f = total.row(a, k);
+				const double power = moveRow(n, dt, damping, mass, f, workedBy < 0 ? f : worked[a], velocity.row(a, k), position.row(a, k));
+				if (workedBy >= 0) workPart[workedBy][k] += 0.5 * dt * power;
+			}
+		position.wrap(k);
+		square[k] = fastestSquared(n, velocity.row(0, k), velocity.row(1, k), velocity.row(2, k));
+		for (int i = 0; i < n; ++i) {
+			places[k * n + i].centre = position.get(k, i);
+			motions[k * n + i].velocity = velocity.get(k, i);
+		}
+	}
+	double fastest2 = 0;
+	kinetic = 0;
+	int lost = -1;
+	for (int k = 0; k < rings; ++k) {
+		kinetic += kineticPart[k];
+		dampedWork += dampedPart[k];
+		oRingWork += oRingPart[k];
+		for (std::size_t t = 0; t < terms.size(); ++t) terms[t].work += workPart[t][k];
+		if (lost < 0 && !(square[k] * dt * dt < limit * limit))
+			for (int i = 0; i < n && lost < 0; ++i)
+				if (!(velocity.get(k, i).squaredNorm() * dt * dt < limit * limit)) lost = k * n + i;
+		fastest2 = std::max(fastest2, square[k]);
+	}
+	fastest = std::sqrt(fastest2);
+	return lost;
+}
+
+int MembraneRows::moveSpins(double dt, double damping, double inertia, const RingField& bondTorque, const Load* loads, RingField& spin, Motion* motions,
+                            bool energies)
+{
+	const int n = stencil.perRing;
+	int lost = -1;
+	for (int k = oRings; k < stencil.rings - oRings; ++k) {
+		for (int i = 0; i < n; ++i) {
+			const int m = k * n + i;
+			const Vec3 torque = bondTorque.get(k, i) + loads[m].torque, before = spin.get(k, i);
+			Vec3 after;
+			for (int a = 0; a < 3; ++a) {
+				const double acceleration = torque[a] / inertia, power = acceleration * (before[a] + 0.5 * dt * acceleration);
+				after[a] = before[a] + dt * acceleration * (1 - damping * ((power > 0) - (power < 0)));
+			}
+			if (energies) {
+				kinetic += 0.5 * inertia * before.squaredNorm();
+				dampedWork += damping * dt * before.cwiseAbs().dot(torque.cwiseAbs());
+			}
+			if (lost < 0 && !std::isfinite(after.sum())) lost = m;
+			spin.set(k, i, after);
+			motions[m].spin = after;
+		}
+		spin.wrap(k);
+	}
+	return lost;
+}
+
+} // namespace hexmembrane

@@ -1,0 +1,57 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "Flat.hpp"
+#include "kernels/RingField.hpp"
+
+#include <vector>
+
+namespace hexmembrane {
+
+/// Motion of a membrane's particles, ring by ring, all of one mass: leapfrog with local damping as FlatAssembly::moveGrains, vectorised, with the powers
+/// of what acts on them. Rings of the O-rings move at a velocity of their own.
+class MembraneRows {
+public:
+	/// A load on the particles whose work is wanted.
+	struct Term {
+		const RingField* force = nullptr; ///< null: none
+		int first = 0, last = -1;         ///< rings that it acts on
+		double work = 0; ///< added up by move() (J): force times the mean of the velocities before and after, dt/2 each, so that the sum over
+		                 ///< steps is the trapezoidal rule in force and displacement
+	};
+
+	MembraneRows() = default;
+	/// \param oRings rings at each end that move as told
+	MembraneRows(const HexStencil& stencil, int oRings);
+
+	/// One step. Adds bond forces, terms, contacts (`onParticle`, `loads` of the particles alone).
+	/// \param position moved, and wrapped again; `places` and `motions` of the particles written
+	/// \return index of a particle that is lost (moved `limit` in this step or is not finite), -1: none
+	int move(double dt, double damping, double limit, const RingField& bonds, std::vector<Term>& terms, const std::vector<Vec3>& onParticle,
+	         const Load* loads, RingField& position, Place* places, Motion* motions, bool energies, int threads);
+
+	/// The same for particles that rotate: their spins and torques.
+	int moveSpins(double dt, double damping, double inertia, const RingField& bondTorque, const Load* loads, RingField& spin, Motion* motions,
+	              bool energies);
+
+	/// Sum of all forces on the particles in the last step (N).
+	const RingField& force() const { return total; }
+
+	double mass = 0;           ///< of a particle (kg)
+	RingField velocity;        ///< of all particles
+	Vec3 below = Vec3::Zero(); ///< velocity of the lower O-ring
+	Vec3 above = Vec3::Zero(); ///< of the upper one
+	double fastest = 0;        ///< of the last step (m/s)
+	double kinetic = 0;        ///< by the velocities before the last step (J)
+	double dampedWork = 0;     ///< since last reset (J)
+	double oRingWork = 0;      ///< done on the membrane by the O-rings that move it (J), trapezoidal
+
+private:
+	bool isORing(int k) const { return k < oRings || k >= stencil.rings - oRings; }
+
+	HexStencil stencil;
+	int oRings = 0;
+	RingField total; ///< sum of all forces
+};
+
+} // namespace hexmembrane

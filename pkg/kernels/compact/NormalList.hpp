@@ -1,0 +1,50 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "Flat.hpp"
+
+#include <functional>
+#include <vector>
+
+namespace hexmembrane {
+
+/// Frictionless contacts of grains with the membrane's particles: kn u along the line of centres, nothing remembered, nothing turned.
+///
+/// The list stands by grains and, a second time as indices, by particles. Forces of the pairs are stored and then gathered by particle: the same to the
+/// last bit for any number of threads.
+class NormalList {
+public:
+	struct Pair {
+		int grain, particle; ///< particle: its index among all spheres
+	};
+	/// Takes over the pairs, sorted by particle and then by grain.
+	/// \param grains number of grains; the particles' indices follow them \param particles number of particles
+	void rebuild(const std::vector<Pair>& found, int grains, int particles, const std::function<double(int, int)>& stiffness);
+	void renewStiffness(const std::function<double(int, int)>& stiffness);
+
+	/// Adds what the particles do to the grains to `loads`, and writes what the grains do to the particles to `onParticle` (of all particles).
+	void sweep(const std::vector<Place>& places, std::vector<Load>& loads, std::vector<Vec3>& onParticle, int threads);
+
+	double energy(const std::vector<Place>& places) const;
+	/// Calls visit(grain, particle, kn, overlap, normal) for every touching pair; normal from grain to particle.
+	template <typename Visit>
+	void forEachTouching(const std::vector<Place>& places, Visit&& visit) const
+	{
+		for (std::size_t i = 0; i + 1 < start.size(); ++i)
+			for (int p = start[i]; p < start[i + 1]; ++p) {
+				const Vec3 branch = places[other[p]].centre - places[i].centre;
+				const double distance = branch.norm(), u = places[i].radius + places[other[p]].radius - distance;
+				if (u >= 0) visit(int(i), other[p], kn[p], u, Vec3(branch / distance));
+			}
+	}
+	int size() const { return int(other.size()); }
+
+private:
+	int firstParticle = 0;
+	std::vector<int> start, other; ///< by grain
+	std::vector<double> kn;
+	std::vector<Vec3> force;               ///< on the particle
+	std::vector<int> particleStart, place; ///< by particle: where its pairs stand
+};
+
+} // namespace hexmembrane

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The compact tier against the reference tier, and with itself over a saved state."""
+
+import numpy as np
+import pytest
+from compactScene import build, forces, run, state
+
+SCENES = {
+	"membrane": {},
+	"wall": dict(lateral="wall"),
+	"moving": dict(spin=0.05, velocity=0.05),
+	"rough membrane": dict(membraneFriction=0.2, spin=0.02),
+	"membrane with shear": dict(poisson=0.2, spin=0.02),
+	"no friction": dict(friction=0.0, rollingFriction=0.0),
+	"no rolling resistance": dict(rollingFriction=0.0, spin=0.02),
+	"closed loop": dict(gain=0.05),
+}
+
+
+def results(tier, steps, O, **options):
+	O.reset()
+	made = build(tier, **options)
+	run(steps)
+	return state(), forces(), made
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_forcesAfterOneStep(O, scene):
+	"""Same formulas, another order of sums: forces agree to rounding of positions over overlaps."""
+	reference, compact = (results(tier, 1, O, **SCENES[scene])[1] for tier in ("reference", "compact"))
+	size = np.abs(reference).max(axis=0)
+	assert (size[:3] > 0).all()
+	scale = np.repeat([size[:3].max(), max(size[3:].max(), 1e-30)], 3)
+	assert (np.abs(compact - reference) / scale).max() < 1e-11
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_statesAfterManySteps(O, scene):
+	"""200 steps with collisions, sliding and rolling: differences of rounding have grown, but by no error of any formula."""
+	(reference, loads, madeReference), (compact, other, madeCompact) = (results(tier, 200, O, **SCENES[scene]) for tier in ("reference", "compact"))
+	start = results("reference", 0, O, **SCENES[scene])[0]
+	moved = np.abs(reference[:, :3] - start[:, :3]).max()
+	assert moved > 1e-8
+	assert np.abs(compact - reference)[:, :3].max() < 1e-7 * moved
+	assert np.abs(compact - reference)[:, 3:6].max() < 1e-7 * np.abs(reference[:, 3:6]).max()
+	assert np.abs(other - loads)[:, :3].max() < 1e-7 * np.abs(loads[:, :3]).max()
+	for name, engine in madeReference.items():
+		for attribute in ("force", "displacement", "radialStress", "velocity", "factor", "transmitted"):
+			value = getattr(engine, attribute, None)
+			if isinstance(value, float) and np.isfinite(value):
+				assert getattr(madeCompact[name], attribute) == pytest.approx(value, rel=1e-6, abs=1e-9), (name, attribute)
+
+
+def test_stepsAreCounted(O):
+	build("compact", substeps=7)
+	O.run(1, True)
+	assert O.iter == 1 and O.time == pytest.approx(O.dt)
+	O.run(20, True)
+	assert O.iter == 21 and O.time == pytest.approx(21 * O.dt)
+	O.step()
+	assert O.iter == 28 and O.time == pytest.approx(28 * O.dt)
