@@ -200,6 +200,8 @@ void CompactLoop::moveAll()
 		}
 		if (lost >= 0) stopLost(flat.id[grains + lost]);
 		flat.noteSpeed(rows.fastest, dt);
+		if (oRings) oRings->addWork(rows.oRingWork);
+		rows.oRingWork = 0;
 		size_t t = 0;
 		if (pressure) pressure->work += terms[t++].work;
 		for (; t < terms.size(); ++t) radialServo->work += terms[t].work;

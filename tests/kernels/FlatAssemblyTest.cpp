@@ -90,7 +90,8 @@ std::map<int, Load> bruteForce(const FlatAssembly& flat)
 			if (u < 0) continue;
 			const ContactLaw law = flat.lawOf(i, j);
 			const Vec3 n = branch.normalized(), arm1 = (flat.places[i].radius - u / 2) * n, arm2 = -(flat.places[j].radius - u / 2) * n;
-			const Vec3 v = flat.motions[j].velocity + flat.motions[j].spin.cross(arm2) - flat.motions[i].velocity - flat.motions[i].spin.cross(arm1);
+			const Vec3 v =
+			        flat.motions[j].velocity + flat.motions[j].spin.cross(arm2) - flat.motions[i].velocity - flat.motions[i].spin.cross(arm1);
 			const Vec3 shear = cutTo(-law.ks * dt * acrossNormal(v, n), law.friction * law.kn * u);
 			const Vec3 moment = cutTo(-law.kr * dt * acrossNormal(flat.motions[j].spin - flat.motions[i].spin, n), law.rollingArm * law.kn * u);
 			const Vec3 force = law.kn * u * n + shear;
@@ -105,7 +106,8 @@ std::map<int, Load> bruteForce(const FlatAssembly& flat)
 			const Vec3 arm = touch.point - flat.places[i].centre, armB = touch.point - boundary.solid.centre;
 			const Vec3 v = flat.motions[i].velocity + flat.motions[i].spin.cross(arm) - boundary.velocity - boundary.spin.cross(armB);
 			const Vec3 shear = cutTo(-law.ks * dt * acrossNormal(v, touch.normal), law.friction * law.kn * touch.u);
-			const Vec3 moment = cutTo(-law.kr * dt * acrossNormal(flat.motions[i].spin - boundary.spin, touch.normal), law.rollingArm * law.kn * touch.u);
+			const Vec3 moment =
+			        cutTo(-law.kr * dt * acrossNormal(flat.motions[i].spin - boundary.spin, touch.normal), law.rollingArm * law.kn * touch.u);
 			const Vec3 force = law.kn * touch.u * touch.normal + shear;
 			loads[flat.id[i]] += {force, arm.cross(force) + moment};
 		}

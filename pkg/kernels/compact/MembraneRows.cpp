@@ -104,7 +104,8 @@ int MembraneRows::move(double dt, double damping, double limit, const RingField&
 				double* x = position.row(a, k);
 				const double* f = total.row(a, k);
 				for (int i = 0; i < n; ++i) {
-					oRingPart[k] -= 0.5 * dt * f[i] * (v[i] + told[a]); // the O-ring holds against what acts
+					// the O-ring holds against what acts, and brings the particle to its velocity
+					oRingPart[k] += 0.5 * (mass * (told[a] - v[i]) - dt * f[i]) * (v[i] + told[a]);
 					v[i] = told[a];
 					x[i] += dt * told[a];
 				}

@@ -44,7 +44,7 @@ public:
 	double fastest = 0;        ///< of the last step (m/s)
 	double kinetic = 0;        ///< by the velocities before the last step (J)
 	double dampedWork = 0;     ///< since last reset (J)
-	double oRingWork = 0;      ///< done on the membrane by the O-rings that move it (J), trapezoidal
+	double oRingWork = 0;      ///< done on the membrane by the O-rings since last reset (J), trapezoidal
 
 private:
 	bool isORing(int k) const { return k < oRings || k >= stencil.rings - oRings; }
