@@ -139,6 +139,18 @@ void CompactLoop::importInteractions()
 	scene->interactions->clear();
 }
 
+// Positions and boundaries as they were when the forces of the last step were computed.
+CompactLoop::Instant CompactLoop::lastInstant() const
+{
+	Instant then{flat.places, flat.boundaries};
+	for (int i = 0; i < flat.spheres(); ++i) then.places[i].centre -= lastDt * flat.motions[i].velocity;
+	for (size_t b = 0; b < then.boundaries.size(); ++b) {
+		then.boundaries[b].solid.centre -= lastDt * flat.boundaries[b].velocity;
+		if (wallServo && boundaryIds[b] == wallServo->wall) then.boundaries[b].solid.radius += lastDt * wallServo->velocity;
+	}
+	return then;
+}
+
 void CompactLoop::exportContacts()
 {
 	if (!collected) throw std::runtime_error("CompactLoop.exportContacts: nothing computed yet; fix: run a step first");
@@ -166,25 +178,22 @@ void CompactLoop::exportContacts()
 		contact->iterMadeReal = scene->iter;
 		interactions.insert(contact);
 	};
-	// normal forces are those of the present positions, memories those of the last step
-	flat.contacts.forEachTouching([&](int i, int j, const ContactMemory& memory, unsigned char bits) {
-		const auto &a = flat.places[i], &b = flat.places[j];
+	const Instant then = lastInstant();
+	const auto& places = then.places;
+	const auto writeSpheres = [&](int i, int j, const hexmembrane::ContactLaw& law, const ContactMemory* memory, unsigned char bits) {
+		const auto &a = places[i], &b = places[j];
 		const Vector3r branch = b.centre - a.centre;
 		const Real distance = branch.norm(), u = a.radius + b.radius - distance;
-		if (u < 0 && !(bits & hexmembrane::contactBonded)) return;
 		const Vector3r normal = branch / distance;
-		write(flat.id[i], flat.id[j], memory.law, true, u, normal, a.centre + (a.radius - 0.5 * u) * normal, a.radius, b.radius, &memory, bits);
-	});
-	flat.smooth.forEachTouching(flat.places, [&](int i, int j, Real, Real u, const Vector3r& normal) {
-		const auto &a = flat.places[i], &b = flat.places[j];
-		write(flat.id[i], flat.id[j], flat.lawOf(i, j), true, u, normal, a.centre + (a.radius - 0.5 * u) * normal, a.radius, b.radius, nullptr, 0);
-	});
-	for (size_t k = 0; k < flat.boundaries.size(); ++k)
+		write(flat.id[i], flat.id[j], law, true, u, normal, a.centre + (a.radius - 0.5 * u) * normal, a.radius, b.radius, memory, bits);
+	};
+	flat.contacts.forEachTouching([&](int i, int j, const ContactMemory& memory, unsigned char bits) { writeSpheres(i, j, memory.law, &memory, bits); });
+	flat.smooth.forEachTouching(places, [&](int i, int j, Real, Real, const Vector3r&) { writeSpheres(i, j, flat.lawOf(i, j), nullptr, 0); });
+	for (size_t k = 0; k < then.boundaries.size(); ++k)
 		flat.boundaryContacts[k].forEachTouching([&](int i, const ContactMemory& memory, unsigned char bits) {
-			const auto touch = flat.boundaries[k].touch(flat.places[i]);
-			if (touch.u < 0 && !(bits & hexmembrane::contactBonded)) return;
-			const Real r = flat.places[i].radius;
-			write(boundaryIds[k], flat.id[i], memory.law, false, touch.u, touch.normal, touch.point, r, r, &memory, bits);
+			const auto touch = then.boundaries[k].touch(places[i]);
+			write(boundaryIds[k], flat.id[i], memory.law, false, touch.u, touch.normal, touch.point, places[i].radius, places[i].radius, &memory,
+			      bits);
 		});
 	exported = true;
 }
@@ -193,7 +202,7 @@ int CompactLoop::contactCount() const
 {
 	int count = 0;
 	forEachContact([&](int, int, const ContactMemory&, unsigned char) { ++count; });
-	flat.smooth.forEachTouching(flat.places, [&](int, int, Real, Real, const Vector3r&) { ++count; });
+	flat.smooth.forEachTouching(lastInstant().places, [&](int, int, Real, Real, const Vector3r&) { ++count; });
 	return count;
 }
 

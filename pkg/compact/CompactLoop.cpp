@@ -179,7 +179,7 @@ void CompactLoop::driveBoundaries()
 
 void CompactLoop::moveAll()
 {
-	const Real dt = scene->dt;
+	const Real dt = lastDt = scene->dt;
 	const bool energies = scene->trackEnergy;
 	const int lostGrain = flat.moveGrains(dt, damping, energies, threads);
 	if (lostGrain >= 0) stopLost(lostGrain);
@@ -200,7 +200,7 @@ void CompactLoop::moveAll()
 		}
 		if (lost >= 0) stopLost(flat.id[grains + lost]);
 		flat.noteSpeed(rows.fastest, dt);
-		if (oRings) oRings->addWork(rows.oRingWork);
+		if (oRings) oRings->work += rows.oRingWork;
 		rows.oRingWork = 0;
 		size_t t = 0;
 		if (pressure) pressure->work += terms[t++].work;
@@ -234,6 +234,7 @@ void CompactLoop::bookEnergies(Real elastic)
 	flat.dampedWork = rows.dampedWork = 0;
 	if (pressure) pressure->bookWork();
 	if (radialServo) radialServo->bookWork();
+	if (oRings) oRings->bookEnergy();
 }
 
 void CompactLoop::stopLost(Body::id_t id) const

@@ -62,6 +62,11 @@ private:
 	void importInteractions();
 	template <typename Visit>
 	void forEachContact(Visit&& visit) const;
+	struct Instant {
+		vector<hexmembrane::Place> places;
+		vector<hexmembrane::FlatBoundary> boundaries;
+	};
+	Instant lastInstant() const;
 
 	// Caches: made from the scene and the saved attributes.
 	hexmembrane::FlatAssembly flat;
@@ -74,6 +79,7 @@ private:
 	const HexMembrane* collectedMembrane = nullptr;
 	bool collected = false;
 	int threads = 1;
+	Real lastDt = 0;
 
 	// The engines, by what they are.
 	MembraneBonds* bonds = nullptr;
@@ -98,7 +104,7 @@ private:
 		((vector<shared_ptr<Engine>>,engines,,,"Engines that are stepped inside: at most one :yref:`MembraneBonds`, :yref:`MembranePressure`, :yref:`MembraneRadialServo`, :yref:`MembraneORings`, :yref:`RadialWallServo`, and :yref:`PlatenDrives<PlatenDrive>`. They do not stand in ``O.engines``."))
 		((Real,damping,0.2,,"Local damping, as :yref:`NewtonIntegrator.damping` [-], 0 to below 1."))
 		((int,substeps,100,,"Steps in one YADE iteration [-], >= 1."))
-		((Real,skin,NaN,,"Reach of the neighbour lists beyond contact [m]; NaN: a tenth of the smallest sphere's radius. Larger: longer lists, made more seldom."))
+		((Real,skin,NaN,,"Reach of the neighbour lists beyond contact [m]; NaN: 0.3 of the smallest sphere's radius. Larger: longer lists, made more seldom."))
 		((bool,membraneContacts,false,,"Let membrane particles that are not bonded to each other collide (folds of the membrane)."))
 		((long,listsMade,0,Attr::readonly,"How often neighbour lists were made."))
 		((bool,exported,false,Attr::readonly,"``O.interactions`` holds contacts written by :yref:`exportContacts<CompactLoop.exportContacts>`; they are cleared before the next step."))

@@ -154,7 +154,7 @@ Real CompactLoop::usedSkin() const
 	if (!math::isnan(skin)) return skin;
 	Real smallest = std::numeric_limits<Real>::infinity();
 	for (const auto& place : flat.places) smallest = std::min(smallest, place.radius);
-	return 0.1 * smallest;
+	return 0.3 * smallest;
 }
 
 void CompactLoop::refreshMaterials()

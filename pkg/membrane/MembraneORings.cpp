@@ -54,14 +54,14 @@ void MembraneORings::grip(int k, const Vector3r& velocity, vector<Vector3r>& hel
 
 void MembraneORings::bookWork(vector<Vector3r>& held, vector<Vector3r>& at)
 {
-	addWork(hexmembrane::trapezoidalWork(lastForces, lastPositions, held, at));
+	work += hexmembrane::trapezoidalWork(lastForces, lastPositions, held, at);
 	lastForces.swap(held);
 	lastPositions.swap(at);
+	bookEnergy();
 }
 
-void MembraneORings::addWork(Real done)
+void MembraneORings::bookEnergy()
 {
-	work += done;
 	if (scene->trackEnergy) scene->energy->add(-work, "oRingWork", energyIndex, /*reset*/ true);
 }
 

@@ -14,8 +14,8 @@ public:
 
 	//! Velocities of the lower and the upper rows. \throws std::invalid_argument, std::runtime_error for what is set wrong
 	std::pair<Vector3r, Vector3r> velocities() const;
-	//! Adds to the work done and enters it into the scene's energies.
-	void addWork(Real done);
+	//! Enters `work` into the scene's energies, once an iteration.
+	void bookEnergy();
 
 private:
 	const Body& platen(Body::id_t id, const char* name) const;

@@ -24,7 +24,7 @@ public:
 	void prepare();
 	//! The kernel of a membrane; none for a mesh of one's own.
 	hexmembrane::TubePressure* membraneKernel() { return tube.get(); }
-	//! Enters `work` into the scene's energies.
+	//! Enters `work` into the scene's energies, once an iteration.
 	void bookWork();
 
 private:

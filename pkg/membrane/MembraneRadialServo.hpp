@@ -20,7 +20,7 @@ public:
 	void prepare();
 	//! Corrects the factor when it is due, by the mean pressure that group 2 transmits; then `force` on its rings at these positions.
 	void computeForces(const hexmembrane::RingField& positions, const std::function<Real()>& transmittedNow);
-	//! Enters `work` into the scene's energies.
+	//! Enters `work` into the scene's energies, once an iteration.
 	void bookWork();
 
 	vector<int> rows;             //!< rings of group 2, after prepare()

@@ -97,7 +97,7 @@ class Membrane:
 	areaRule: str = key(
 		"tributary", "area of a particle of group 2: 2 sqrt(3) R^2 or the circumscribed cube's (2R)^2", "", choices=("tributary", "cube")
 	)
-	gain: float = key(0.0, "gain of the loop that brings group 2's transmitted pressure to the target, 0: open loop", "", low=0, high=1)
+	gain: float = key(0.05, "gain of the loop that brings group 2's transmitted pressure to the target, 0: open loop", "", low=0, high=1)
 
 	def check(self, path):
 		if self.tensionOnly and self.poisson < 0.333333:
@@ -177,7 +177,9 @@ class Numerics:
 	dt: Optional[float] = key(None, "time step; none: safety times the critical one of contacts and membrane", "s", low=0, openLow=True)
 	safety: float = key(0.5, "share of the critical time step", "", low=0, high=1, openLow=True)
 	damping: float = key(0.2, "local (Cundall) damping of NewtonIntegrator", "", low=0, high=1, openHigh=True)
-	verlet: float = key(0.2, "contact detection's skin, as a share of the smallest sphere's radius", "", low=0, high=1)
+	verlet: float = key(0.2, "contact detection's skin in the reference tier, as a share of the smallest sphere's radius", "", low=0, high=1)
+	skin: float = key(0.3, "skin of the neighbour lists in the compact tier, as a share of the smallest sphere's radius", "", low=0, high=1, openLow=True)
+	substeps: int = key(100, "steps that the compact tier takes in one YADE iteration at most", "", low=1)
 	threads: Optional[int] = key(None, "OpenMP threads; none: as YADE was started", "", low=1, high=1024)
 
 
@@ -197,6 +199,12 @@ class Config:
 	"""A whole test."""
 
 	title: str = key("triaxial test", "a name for the plot and the log")
+	tier: str = key(
+		"compact",
+		"how steps are taken: by one engine over flat arrays ('compact', an order of magnitude faster) or by YADE's own loop ('reference')",
+		"",
+		choices=("compact", "reference"),
+	)
 	boundary: str = key(
 		"membrane", "lateral boundary of the specimen: flexible membrane or rigid cylinder wall; the packing is the same", "", choices=("membrane", "wall")
 	)

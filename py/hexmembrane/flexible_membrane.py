@@ -74,8 +74,6 @@ class FlexibleMembrane:
 			return before, [yade.MembraneORings(membrane=membrane, mode=given.oRings, bottomPlaten=bottom, topPlaten=top)]
 
 		return Parts(
-			bounds=[],
-			geometries=[],
 			engines=engines,
 			platenRadius=packing.radius,
 			overhang=membrane.rings * membrane.ringSpacing - config.specimen.height,

@@ -29,15 +29,12 @@ from typing import Callable
 class Parts:
 	"""What a boundary, whose bodies are made, brings to a new scene.
 
-	:param bounds: Bo1 functors. :param geometries: Ig2 functors.
 	:param engines: ``engines(bottom, top)``, the ids of the platens -> (engines before the platens' drives, after them).
 	:param platenRadius: radius that the platens need [m]. :param overhang: how far it reaches beyond the specimen, both ends together [m].
 	:param smallest: radius of its smallest spheres [m], inf without. :param critical: its critical time step [s], inf without.
 	:param log: lines that describe it.
 	"""
 
-	bounds: list
-	geometries: list
 	engines: Callable
 	platenRadius: float
 	overhang: float

@@ -47,8 +47,6 @@ class RigidWall:
 			return [], [servo]
 
 		return Parts(
-			bounds=[yade.Bo1_CylinderWall_Aabb()],
-			geometries=[yade.Ig2_CylinderWall_Sphere_ScGeom()],
 			engines=engines,
 			platenRadius=_PLATENS * packing.radius,
 			overhang=0.0,

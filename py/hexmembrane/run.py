@@ -16,7 +16,7 @@ from hexmembrane.schema import ConfigError, toDict
 STAGES = ("specimen", "boundary", "consolidation", "shear")
 
 #: Keys that may differ when a test is resumed: they do not change what has been computed.
-_FREE = ("title", "output.vtkEvery", "output.checkpointEvery", "numerics.threads", "specimen.packing", "specimen.gradation")
+_FREE = ("title", "tier", "output.vtkEvery", "output.checkpointEvery", "numerics.threads", "specimen.packing", "specimen.gradation")
 _FREE_LIMITS = ("consolidation.maxSteps", "consolidation.unbalanced", "consolidation.tolerance", "consolidation.timeLimit")
 
 
@@ -80,11 +80,13 @@ def run(config, out, resume=False, until="shear", start=None, quiet=False):
 		facts = checkpoints.read(out)
 		_sameTest(config, out)
 		stages.load(out / facts["state"])
+		scene.setTier(config)
 		say(f"resumed in {facts['stage']} after {facts['rows']} rows, step {O.iter}")
 		test = stages.Test(config, out, quiet, facts)
 	elif start is not None:
 		stages.load(start)
 		_sameState(config)
+		scene.setTier(config)
 		O.trackEnergy = config.output.energy
 		configuration.save(config, out / "config.yaml")
 		test = stages.Test(config, out, quiet)

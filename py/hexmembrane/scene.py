@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""YADE's scene of a test: materials, grains, lateral boundary, platens and the list of engines; and handles to its parts."""
+"""YADE's scene of a test: materials, grains, lateral boundary, platens and the list of engines of its tier; and handles to its parts."""
 
 import math
 
@@ -13,14 +13,16 @@ from hexmembrane.platens import platen
 class Scene:
 	"""Handles to the parts of the scene in ``O``, found by their types; make a new one after ``O.load``.
 
-	Attributes: ``lateral`` (the boundary's handles, see :mod:`hexmembrane.lateral`), ``guard``, ``bottom`` and ``top`` (the platens' drives).
+	Attributes: ``lateral`` (the boundary's handles, see :mod:`hexmembrane.lateral`), ``guard``, ``bottom`` and ``top`` (the platens' drives),
+	``loop`` (the compact tier's engine, None in the reference tier).
 
 	:raises RuntimeError: the scene in ``O`` is not one of :func:`build`.
 	"""
 
 	def __init__(self):
 		found = {}
-		for engine in O.engines:
+		self.loop = _loop()
+		for engine in [*O.engines, *(self.loop.engines if self.loop else ())]:
 			found.setdefault(type(engine).__name__, []).append(engine)
 		self.lateral = lateral.of(found)
 		self.guard = lateral.only(found, "RunawayGuard")
@@ -45,6 +47,15 @@ class Scene:
 	def grainIds(self):
 		"""Ids of the grains: spheres without the membrane's bit."""
 		return [b.id for b in O.bodies if isinstance(b.shape, yade.Sphere) and not b.mask & flexible_membrane.MASK]
+
+	def showContacts(self):
+		"""See to it that ``O.interactions`` holds the contacts of the last step, in either tier."""
+		if self.loop:
+			self.loop.exportContacts()
+
+	def criticalTimeStep(self):
+		"""Critical time step [s] of the contacts as they are: the true one in the compact tier, a bound from below in the reference tier."""
+		return self.loop.criticalTimeStep() if self.loop else timestep.measured(self)
 
 	def setFriction(self, coefficient):
 		"""Give the grains, and the contacts that they have, a coefficient of friction; the lesser of two materials acts."""
@@ -104,6 +115,59 @@ def _platens(config, parts):
 	return ids
 
 
+def _loop():
+	return next((engine for engine in O.engines if isinstance(engine, yade.CompactLoop)), None)
+
+
+def _engines(config, inner, smallest):
+	"""The list of engines of the configuration's tier round those of boundary and platens, which both tiers share.
+
+	:param smallest: radius of the smallest sphere [m].
+	"""
+	given = config.numerics
+	if config.tier == "compact":
+		loop = yade.CompactLoop(engines=inner, damping=given.damping, substeps=given.substeps, skin=given.skin * smallest)
+		return [yade.ForceResetter(), loop, yade.RunawayGuard(iterPeriod=1)]
+	return [
+		yade.ForceResetter(),
+		yade.InsertionSortCollider(
+			[yade.Bo1_Sphere_Aabb(), yade.Bo1_Platen_Aabb(), yade.Bo1_CylinderWall_Aabb()],
+			verletDist=given.verlet * smallest,
+			avoidSelfInteractionMask=flexible_membrane.MASK,
+		),
+		yade.InteractionLoop(
+			[
+				yade.Ig2_Sphere_Sphere_LinearScGeom(avoidGranularRatcheting=False),
+				yade.Ig2_Platen_Sphere_ScGeom(),
+				yade.Ig2_CylinderWall_Sphere_ScGeom(),
+			],
+			[yade.Ip2_LinearMat_LinearMat_LinearPhys()],
+			[yade.Law2_ScGeom_LinearPhys_Linear()],
+		),
+		*inner,
+		yade.NewtonIntegrator(damping=given.damping),
+		yade.RunawayGuard(),
+	]
+
+
+def setTier(config):
+	"""Bring the scene in ``O``, one of :func:`build`, to the configuration's tier; contacts keep their forces and history.
+
+	From the compact tier one step is taken, which writes the contacts.
+	"""
+	loop = _loop()
+	if (loop is not None) == (config.tier == "compact"):
+		return
+	names = ("MembraneBonds", "MembranePressure", "MembraneRadialServo", "MembraneORings", "RadialWallServo", "PlatenDrive")
+	if loop:
+		loop.substeps = 1
+		O.step()
+		loop.exportContacts()
+	inner = list(loop.engines) if loop else [engine for engine in O.engines if type(engine).__name__ in names]
+	radii = [body.shape.radius for body in O.bodies if isinstance(body.shape, yade.Sphere)]
+	O.engines = _engines(config, inner, min(radii))
+
+
 def build(config, packing, say=print):
 	"""Fill YADE's empty scene with the grains of ``packing``, lateral boundary, platens and engines, at the pressure 0; the handles.
 
@@ -118,25 +182,11 @@ def build(config, packing, say=print):
 	bottom, top = _platens(config, parts)
 	smallest = float(packing.radii.min())
 	before, after = parts.engines(bottom, top)
-	O.engines = [
-		yade.ForceResetter(),
-		yade.InsertionSortCollider(
-			[yade.Bo1_Sphere_Aabb(), yade.Bo1_Platen_Aabb(), *parts.bounds],
-			verletDist=config.numerics.verlet * min(smallest, parts.smallest),
-			avoidSelfInteractionMask=flexible_membrane.MASK,
-		),
-		yade.InteractionLoop(
-			[yade.Ig2_Sphere_Sphere_LinearScGeom(avoidGranularRatcheting=False), yade.Ig2_Platen_Sphere_ScGeom(), *parts.geometries],
-			[yade.Ip2_LinearMat_LinearMat_LinearPhys()],
-			[yade.Law2_ScGeom_LinearPhys_Linear()],
-		),
-		*before,
+	drives = [
 		yade.PlatenDrive(platen=bottom, direction=(0, 0, 1), mode="velocity", velocity=0.0),
 		yade.PlatenDrive(platen=top, direction=(0, 0, -1), mode="stress", stress=0.0, area=math.pi * packing.radius**2),
-		*after,
-		yade.NewtonIntegrator(damping=config.numerics.damping),
-		yade.RunawayGuard(),
 	]
+	O.engines = _engines(config, [*before, *drives, *after], min(smallest, parts.smallest))
 	O.trackEnergy = config.output.energy
 	scene = Scene()
 	_setTimeStep(config, timestep.grainStep(config.specimen, smallest), parts, say)
@@ -164,7 +214,7 @@ def _setTimeStep(config, grains, parts, say):
 
 def checkTimeStep(config, scene, say):
 	"""Lower O.dt if the contacts that have formed ask for it by 10 % or more; an explicit one above the critical is an error."""
-	critical = timestep.measured(scene)
+	critical = scene.criticalTimeStep()
 	if config.numerics.dt is not None and config.numerics.dt > critical:
 		raise ValueError(
 			f"numerics.dt = {config.numerics.dt:g} s: is above the critical time step {critical:.4g} s of the present contacts; "

@@ -85,6 +85,7 @@ class Test:
 
 	def row(self):
 		"""Measure, write and return a row of the records."""
+		self.scene.showContacts()
 		self.last = measure.row(self.scene, self.grains, self.reference, self.stage, self.elapsed())
 		lost = measure.escaped(self.scene, self.grains)
 		if lost is not None:

@@ -7,13 +7,10 @@ from YADE's own engine timers: geometry, law and everything between them, no col
 Arguments: folder of the results, number of spheres (default 7000).
 """
 
-import csv
 import math
 import os
-import platform
 import statistics
 import sys
-import time
 
 import hexmembrane  # noqa: F401
 import numpy
@@ -38,6 +35,9 @@ from yade import (
 	timing,
 	utils,
 )
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from table import write  # noqa: E402
 
 WARM, STEPS, TURNS = 50, 150, 7
 SWELL = 1.01  # of the touching spheres' radii, so that they overlap
@@ -136,23 +136,7 @@ def main(folder, count):
 		ratio = statistics.median(stock / mine for stock, mine in zip(figures[STOCK], figures[law]))
 		rows.append((law, count, contacts, statistics.median(figures[law]), ratio))
 		print("%-48s %6.1f ns a contact and step, %.2f times as fast as YADE's cohesive-frictional" % (law, rows[-1][3], ratio))
-	os.makedirs(folder, exist_ok=True)
-	path = os.path.join(folder, "contact.csv")
-	with open(path + ".part", "w", newline="") as file:
-		writer = csv.writer(file)
-		writer.writerow(["# %s, %s, %d processors, OMP_NUM_THREADS %s" % (time.strftime("%Y-%m-%d"), processor(), os.cpu_count(), os.environ.get("OMP_NUM_THREADS"))])
-		writer.writerow(["law", "spheres", "contacts", "cost (ns a contact and step)", "times as fast as " + STOCK])
-		writer.writerows(rows)
-	os.replace(path + ".part", path)
-	print("written: " + path)
-
-
-def processor():
-	with open("/proc/cpuinfo") as file:
-		for line in file:
-			if line.startswith("model name"):
-				return line.split(":", 1)[1].strip()
-	return platform.machine()
+	write(os.path.join(folder, "contact.csv"), ["law", "spheres", "contacts", "cost (ns a contact and step)", "times as fast as " + STOCK], rows)
 
 
 if __name__ == "__main__":

@@ -6,12 +6,9 @@ own engine timers. The stock bonds are YADE's interactions made with CohFrictMat
 Arguments: radii of the membrane's spheres in mm (default 0.5 0.25).
 """
 
-import csv
 import os
-import platform
 import statistics
 import sys
-import time
 
 import hexmembrane  # noqa: F401
 from yade import (
@@ -29,6 +26,9 @@ from yade import (
 	timing,
 )
 from yade.wrapper import HexMembrane, MembraneBonds, MembranePressure
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from table import write  # noqa: E402
 
 WARM, STEPS, TURNS = 100, 150, 5
 
@@ -98,23 +98,7 @@ def main(radii, folder):
 			% rows[-1],
 			flush=True,
 		)
-	os.makedirs(folder, exist_ok=True)
-	path = os.path.join(folder, "membrane.csv")
-	with open(path + ".part", "w", newline="") as file:
-		writer = csv.writer(file)
-		writer.writerow(["# %s, %s, %d processors, OMP_NUM_THREADS %s" % (time.strftime("%Y-%m-%d"), processor(), os.cpu_count(), os.environ.get("OMP_NUM_THREADS"))])
-		writer.writerow(["radius (mm)", "particles", "bonds (ns)", "pressure (ns)", "bonds + pressure (ns)", "stock bonds (ns)", "ratio"])
-		writer.writerows(rows)
-	os.replace(path + ".part", path)
-	print("written: " + path)
-
-
-def processor():
-	with open("/proc/cpuinfo") as file:
-		for line in file:
-			if line.startswith("model name"):
-				return line.split(":", 1)[1].strip()
-	return platform.machine()
+	write(os.path.join(folder, "membrane.csv"), ["radius (mm)", "particles", "bonds (ns)", "pressure (ns)", "bonds + pressure (ns)", "stock bonds (ns)", "ratio"], rows)
 
 
 if __name__ == "__main__":

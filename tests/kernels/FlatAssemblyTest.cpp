@@ -12,7 +12,7 @@ using namespace hexmembrane;
 
 namespace {
 
-constexpr double emod = 1e7, dt = 1e-6;
+constexpr double emod = 1e5, dt = 1e-6; // soft: spheres at random overlap deeply
 
 ContactMaterial sand()
 {

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How a benchmark writes its figures: a CSV whose first line names date and machine."""
+
+import csv
+import os
+import platform
+import time
+
+
+def processor():
+	"""The machine's processor as it calls itself."""
+	with open("/proc/cpuinfo") as file:
+		for line in file:
+			if line.startswith("model name"):
+				return line.split(":", 1)[1].strip()
+	return platform.machine()
+
+
+def write(path, header, rows):
+	"""Write rows under a header, by temporary name and rename."""
+	os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
+	with open(path + ".part", "w", newline="") as file:
+		writer = csv.writer(file)
+		threads = os.environ.get("OMP_NUM_THREADS")
+		writer.writerow(["# %s, %s, %d processors, OMP_NUM_THREADS %s" % (time.strftime("%Y-%m-%d"), processor(), os.cpu_count(), threads)])
+		writer.writerow(header)
+		writer.writerows(rows)
+	os.replace(path + ".part", path)
+	print("written: " + path)

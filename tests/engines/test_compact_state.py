@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The compact tier's state: saved and loaded, taken over from the reference tier and handed back, changed by scripts, and refused."""
+
+import numpy as np
+import pytest
+from compactScene import build, forces, referenceEngines, run, state
+
+MOVING = dict(spin=0.05, velocity=0.05)
+
+
+@pytest.mark.parametrize("options", [MOVING, dict(lateral="wall"), dict(poisson=0.2, spin=0.02), dict(membraneFriction=0.2, spin=0.02)])
+def test_saveAndLoadGoOnExactly(O, tmp_path, options):
+	build("compact", **options)
+	run(60)
+	file = str(tmp_path / "state.yade.gz")
+	O.save(file, quiet=True)
+	run(130)
+	whole = state(), forces()
+	O.load(file, quiet=True)
+	run(130)
+	assert (state() == whole[0]).all()
+	assert (forces() == whole[1]).all()
+
+
+def test_savedTwiceBeforeAStepLosesNothing(O, tmp_path):
+	build("compact", **MOVING)
+	run(60)
+	first, second = (str(tmp_path / name) for name in ("a.yade.gz", "b.yade.gz"))
+	O.save(first, quiet=True)
+	run(50)
+	whole = state()
+	O.load(first, quiet=True)
+	O.save(second, quiet=True)
+	O.load(second, quiet=True)
+	run(50)
+	assert (state() == whole).all()
+
+
+def test_sameBatchesOrNot(O):
+	"""The number of steps in an iteration changes nothing but when scripts see the scene."""
+	found = []
+	for substeps in (1, 40):
+		O.reset()
+		build("compact", substeps=substeps, **MOVING)
+		run(80)
+		found.append(state())
+	assert (found[0] == found[1]).all()
+
+
+def test_contactsMoveBetweenTiers(O):
+	"""reference -> compact -> reference in the middle of a run: as if it had stayed in one."""
+	made = build("reference", **MOVING)
+	run(150)
+	whole = state()
+	O.reset()
+	made = build("reference", **MOVING)
+	run(50)
+	inner = list(made.values())
+	import yade
+
+	loop = yade.CompactLoop(engines=inner, damping=0.2, substeps=10)
+	O.engines = [yade.ForceResetter(), loop]
+	run(50)
+	assert O.interactions.countReal() == 0
+	loop.exportContacts()
+	assert O.interactions.countReal() == loop.contactCount()
+	O.engines = referenceEngines(inner, 0.2)
+	run(50)
+	moved = np.abs(whole[:, 3:6]).max()
+	assert np.abs(state() - whole)[:, 3:6].max() < 1e-7 * moved
+
+
+def test_exportedContactsAreThoseOfTheReference(O):
+	"""Forces, moments and geometry of every contact, as YADE's own tools read them."""
+
+	def contacts():
+		found = {}
+		for i in O.interactions:
+			n, sign = i.geom.normal, 1
+			if i.id1 > i.id2 and "Sphere" in str(type(O.bodies[i.id1].shape)):
+				sign = -1
+			key = tuple(sorted((i.id1, i.id2)))
+			found[key] = np.array([*(sign * n), *(sign * i.phys.normalForce), *(sign * i.phys.shearForce), *(sign * i.phys.moment), i.phys.kn, i.phys.ks])
+		return found
+
+	build("reference", **MOVING)
+	run(40)
+	reference = contacts()
+	O.reset()
+	made = build("compact", **MOVING)
+	run(40)
+	made["loop"].exportContacts()
+	compact = contacts()
+	assert set(reference) == set(compact)
+	common = [(reference[key], compact[key]) for key in reference]
+	assert len(common) > 100
+	a, b = (np.array([pair[k] for pair in common]) for k in (0, 1))
+	for columns in (slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12), slice(12, 14)):
+		assert np.abs(a - b)[:, columns].max() < 1e-9 * np.abs(a[:, columns]).max()
+	run(20)
+	assert O.interactions.countReal() == 0  # stale ones are gone
+
+
+def test_scriptsMayMoveAndAddBodies(O):
+	from yade import utils
+
+	build("compact", velocity=0.05)
+	run(20)
+	O.bodies[3].state.vel = (0, 0, 1.5)
+	run(1)
+	assert O.bodies[3].state.vel[2] > 0.5
+	new = O.bodies.append(utils.sphere((0.06, 0, 0.02), 1e-3, material="grain"))
+	run(20)
+	assert np.isfinite(state()).all()
+	O.bodies.erase(new)
+	run(20)
+	assert np.isfinite(np.array([tuple(b.state.pos) for b in O.bodies])).all()
+
+
+def test_forcesFromOutsideAct(O):
+	"""A force that an engine before it adds is held for the iteration: a free sphere falls as told."""
+	import yade
+
+	O.materials.append(yade.LinearMat(emod=1e7, kratio=3, friction=0, density=1000, label="m"))
+	a, b = (O.bodies.append(yade.utils.sphere((x, 0, 0), 1e-3, material="m")) for x in (0.0, 0.1))
+	O.engines = [yade.ForceResetter(), yade.PyRunner(command="O.forces.addF(%d, (0, 0, -1e-3))" % a, iterPeriod=1, initRun=True), yade.CompactLoop(damping=0, substeps=10)]
+	O.dt = 1e-5
+	run(20)
+	steps = 20
+	fall = -1e-3 / O.bodies[a].state.mass * O.dt**2 * steps * (steps + 1) / 2
+	assert O.bodies[a].state.pos[2] == pytest.approx(fall, rel=1e-12)
+	assert tuple(O.bodies[b].state.pos) == (0.1, 0, 0)
+
+
+def test_aRunawaySphereStopsTheRun(O):
+	build("compact", substeps=10)
+	O.step()
+	O.bodies[5].state.vel = (300, 0, 0)
+	with pytest.raises(RuntimeError, match="body 5 at iteration .*half a skin.*fix"):
+		for _ in range(3):
+			O.step()
+
+
+def test_orientationsTurn(O):
+	import yade
+
+	O.materials.append(yade.LinearMat(emod=1e7, kratio=3, friction=0, density=1000, label="m"))
+	b = O.bodies.append(yade.utils.sphere((0, 0, 0), 1e-3, material="m"))
+	O.bodies[b].state.angVel = (0, 0, 2.0)
+	O.engines = [yade.ForceResetter(), yade.CompactLoop(substeps=50)]
+	O.dt = 1e-3
+	run(200)
+	axis, angle = O.bodies[b].state.ori.toAxisAngle()
+	assert angle * axis[2] == pytest.approx(0.4, rel=1e-9)
+
+
+def wrong(O, change):
+	import yade
+
+	made = build("compact")
+	change(made, yade)
+	with pytest.raises((RuntimeError, ValueError)) as caught:
+		O.step()
+		O.step()
+	assert "fix: " in str(caught.value)
+	return str(caught.value)
+
+
+@pytest.mark.parametrize(
+	"change, says",
+	[
+		(lambda made, yade: setattr(made["loop"], "damping", 1.5), "CompactLoop.damping = 1.5"),
+		(lambda made, yade: setattr(made["loop"], "substeps", 0), "CompactLoop.substeps = 0"),
+		(lambda made, yade: setattr(made["loop"], "skin", -1.0), "CompactLoop.skin = -1"),
+		(lambda made, yade: setattr(made["loop"], "engines", made["loop"].engines + [yade.NewtonIntegrator()]), "NewtonIntegrator"),
+		(lambda made, yade: setattr(made["loop"], "engines", made["loop"].engines * 2), "has two MembraneBonds"),
+		(lambda made, yade: setattr(made["loop"], "engines", made["loop"].engines[1:]), "without MembraneBonds"),
+		(lambda made, yade: setattr(yade.O.bodies[0], "mat", yade.FrictMat()), "no LinearMat"),
+		(lambda made, yade: setattr(yade.O.bodies[0], "shape", yade.Box(extents=(1, 1, 1))), "is a Box"),
+		(lambda made, yade: setattr(yade.O.bodies[0].state, "blockedDOFs", "x"), "degrees of freedom"),
+		(lambda made, yade: setattr(yade.O.bodies[0].state, "mass", 0.0), "mass = 0"),
+		(lambda made, yade: setattr(yade.O.bodies[0], "mask", 4), "no bit in common"),
+		(lambda made, yade: setattr(yade.O, "engines", [made["loop"]]), "ForceResetter"),
+		(lambda made, yade: yade.O.bodies.clump([0, 1]), "clump"),
+		(lambda made, yade: setattr(yade.O, "periodic", True), "periodic"),
+	],
+)
+def test_whatItDoesNotKnowIsRefused(O, change, says):
+	assert says in wrong(O, change)
+
+
+def test_criticalStepIsHonest(O):
+	"""Stable for long at 0.8 of it, lost soon at twice it, whatever the damping hides: the message names a body."""
+	made = build("compact", damping=0.6)
+	run(6000)  # to rest
+	made["loop"].damping = 0.0
+	O.dt = 0.8 * made["loop"].criticalTimeStep()
+	run(3000)
+	assert np.isfinite(state()).all()
+	O.dt = 2 * made["loop"].criticalTimeStep()
+	with pytest.raises(RuntimeError, match="half a skin"):
+		for _ in range(300):
+			O.step()
