@@ -126,15 +126,15 @@ void CompactLoop::membraneForces()
 		hexmembrane::TubePressure& kernel = *pressure->membraneKernel();
 		hexmembrane::requireFinite("MembranePressure.pressure", pressure->pressure, "Pa");
 		kernel.compute(pressure->pressure, x);
-		terms.push_back({&kernel.force, kernel.firstRing(), kernel.lastRing(), 0});
+		terms.push_back({&kernel.force, kernel.firstRing(), kernel.lastRing()});
 	}
 	if (radialServo) {
 		radialServo->computeForces(x, [this]() { return transmittedByGroup2(); });
 		// the rings of group 2, below and above the main body
 		const auto& rings = radialServo->rows;
 		const int lower = static_cast<int>(rings.size()) / 2;
-		terms.push_back({&radialServo->force, rings.front(), rings[lower - 1], 0});
-		terms.push_back({&radialServo->force, rings[lower], rings.back(), 0});
+		terms.push_back({&radialServo->force, rings.front(), rings[lower - 1]});
+		terms.push_back({&radialServo->force, rings[lower], rings.back()});
 	}
 }
 
@@ -200,11 +200,7 @@ void CompactLoop::moveAll()
 		}
 		if (lost >= 0) stopLost(flat.id[grains + lost]);
 		flat.noteSpeed(rows.fastest, dt);
-		if (oRings) oRings->work += rows.oRingWork;
-		rows.oRingWork = 0;
-		size_t t = 0;
-		if (pressure) pressure->work += terms[t++].work;
-		for (; t < terms.size(); ++t) radialServo->work += terms[t].work;
+		bookWorks();
 	}
 	// boundaries move as NewtonIntegrator moves blocked bodies: at the velocity that they were given
 	for (size_t b = 0; b < boundaryIds.size(); ++b) {
@@ -219,6 +215,23 @@ void CompactLoop::moveAll()
 		flat.noteSpeed(std::abs(flat.boundaries[b].solid.radius - before) / dt, dt);
 	}
 	flat.endStep();
+}
+
+// Works up to the present positions; the half that leads on from them waits for the next step.
+void CompactLoop::bookWorks()
+{
+	aheadWork.resize(3, 0.);
+	const auto book = [&](size_t slot, Real& work, Real before, Real after) {
+		work += aheadWork[slot] + before;
+		aheadWork[slot] = after;
+	};
+	size_t t = 0;
+	if (pressure) {
+		book(0, pressure->work, terms[0].before, terms[0].after);
+		++t;
+	}
+	if (radialServo) book(1, radialServo->work, terms[t].before + terms[t + 1].before, terms[t].after + terms[t + 1].after);
+	if (oRings) book(2, oRings->work, rows.oRingBefore, rows.oRingAfter);
 }
 
 void CompactLoop::bookEnergies(Real elastic)

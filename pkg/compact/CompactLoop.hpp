@@ -33,6 +33,7 @@ private:
 	void membraneForces();
 	void driveBoundaries();
 	void moveAll();
+	void bookWorks();
 	void bookEnergies(Real elastic);
 	[[noreturn]] void stopLost(Body::id_t id) const;
 	Real transmittedByGroup2() const;
@@ -114,6 +115,7 @@ private:
 		((vector<Vector3r>,listedBoundaryCentres,,Attr::hidden,""))
 		((vector<Real>,listedBoundaryRadii,,Attr::hidden,""))
 		((Real,travelled,0,Attr::hidden,""))
+		((vector<Real>,aheadWork,,Attr::hidden,""))
 		((vector<Vector2i>,contactIds,,Attr::hidden,""))
 		((vector<int>,contactBits,,Attr::hidden,""))
 		((vector<Vector3r>,contactShear,,Attr::hidden,""))

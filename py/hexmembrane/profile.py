@@ -100,6 +100,7 @@ def measure(scene, grains, count=16):
 	"""
 	if count < 1:
 		raise ValueError(f"profile.count = {count}: no slice; fix: 1 or more")
+	scene.showContacts()
 	membrane = scene.lateral.membrane
 	bottom, top = scene.faces()
 	edges = numpy.linspace(bottom, top, count + 1)

@@ -86,9 +86,9 @@ def test_forcesThroughMidHeight(whole, O):
 	stages.load(whole[0] / "consolidated.yade.gz")
 	for drive in scene.Scene().bottom, scene.Scene().top:
 		drive.velocity = 0
-	for _ in range(3000):
-		O.step()
+	O.run(3000, True)
 	handles = scene.Scene()
+	handles.showContacts()
 	bottom, top = handles.faces()
 	middle, platens = (bottom + top) / 2, {handles.bottom.platen, handles.top.platen}
 	cut = 0

@@ -13,12 +13,17 @@ MembraneRows::MembraneRows(const HexStencil& s, int rows) : velocity(s.perRing, 
 
 namespace {
 
-/// One coordinate of a row: v += dt damped(f/m), x += dt v, and the sum of f (v before + v after) of the extra force `term`.
-HEXMEMBRANE_WIDEST double moveRow(int n, double dt, double damping, double mass, const double* __restrict f, const double* __restrict term,
+/// Powers of a force by the velocities before and after a step.
+struct Powers {
+	double before, after;
+};
+
+/// One coordinate of a row: v += dt damped(f/m), x += dt v, and the powers of the force `term`.
+HEXMEMBRANE_WIDEST Powers moveRow(int n, double dt, double damping, double mass, const double* __restrict f, const double* __restrict term,
                                   double* __restrict v, double* __restrict x)
 {
-	double power = 0;
-#pragma omp simd reduction(+ : power)
+	double powerBefore = 0, powerAfter = 0;
+#pragma omp simd reduction(+ : powerBefore, powerAfter)
 	for (int i = 0; i < n; ++i) {
 		const double a = f[i] / mass, before = v[i];
 		const double p = a * (before + 0.5 * dt * a);
@@ -26,9 +31,10 @@ HEXMEMBRANE_WIDEST double moveRow(int n, double dt, double damping, double mass,
 		const double after = before + dt * (a * (1 - damping * sign));
 		v[i] = after;
 		x[i] += dt * after;
-		power += term[i] * (before + after);
+		powerBefore += term[i] * before;
+		powerAfter += term[i] * after;
 	}
-	return power;
+	return {powerBefore, powerAfter};
 }
 
 HEXMEMBRANE_WIDEST void addRow(int n, const double* __restrict a, double* __restrict sum)
@@ -73,8 +79,9 @@ int MembraneRows::move(double dt, double damping, double limit, const RingField&
 {
 	const int n = stencil.perRing, rings = stencil.rings;
 	// one slot a ring, summed in their order: the same bits for any number of threads
-	std::vector<double> square(rings), kineticPart(rings, 0.), dampedPart(rings, 0.), oRingPart(rings, 0.);
-	std::vector<std::vector<double>> workPart(terms.size(), std::vector<double>(rings, 0.));
+	std::vector<double> square(rings), kineticPart(rings, 0.), dampedPart(rings, 0.);
+	std::vector<Powers> oRingPart(rings, Powers{0, 0}), workPart(rings, Powers{0, 0});
+	std::vector<int> workOf(rings, -1);
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
 	for (int k = 0; k < rings; ++k) {
 		for (int i = 0; i < n; ++i) {
@@ -82,7 +89,7 @@ int MembraneRows::move(double dt, double damping, double limit, const RingField&
 			total.set(k, i, onParticle[m] + loads[m].force);
 		}
 		std::array<const double*, 3> worked{};
-		int workedBy = -1;
+		int& workedBy = workOf[k];
 		for (int a = 0; a < 3; ++a) addRow(n, bonds.row(a, k), total.row(a, k));
 		for (std::size_t t = 0; t < terms.size(); ++t) {
 			if (!terms[t].force || k < terms[t].first || k > terms[t].last) continue;
@@ -105,7 +112,8 @@ int MembraneRows::move(double dt, double damping, double limit, const RingField&
 				const double* f = total.row(a, k);
 				for (int i = 0; i < n; ++i) {
 					// the O-ring holds against what acts, and brings the particle to its velocity
-					oRingPart[k] += 0.5 * (mass * (told[a] - v[i]) - dt * f[i]) * (v[i] + told[a]);
+					oRingPart[k].before += 0.5 * (mass * (told[a] - v[i]) * (v[i] + told[a]) - dt * f[i] * v[i]);
+					oRingPart[k].after -= 0.5 * dt * f[i] * told[a];
 					v[i] = told[a];
 					x[i] += dt * told[a];
 				}
@@ -113,8 +121,9 @@ int MembraneRows::move(double dt, double damping, double limit, const RingField&
 		} else
 			for (int a = 0; a < 3; ++a) {
 				const double* f = total.row(a, k);
-				const double power = moveRow(n, dt, damping, mass, f, workedBy < 0 ? f : worked[a], velocity.row(a, k), position.row(a, k));
-				if (workedBy >= 0) workPart[workedBy][k] += 0.5 * dt * power;
+				const Powers power = moveRow(n, dt, damping, mass, f, workedBy < 0 ? f : worked[a], velocity.row(a, k), position.row(a, k));
+				workPart[k].before += 0.5 * dt * power.before;
+				workPart[k].after += 0.5 * dt * power.after;
 			}
 		position.wrap(k);
 		square[k] = fastestSquared(n, velocity.row(0, k), velocity.row(1, k), velocity.row(2, k));
@@ -124,13 +133,18 @@ int MembraneRows::move(double dt, double damping, double limit, const RingField&
 		}
 	}
 	double fastest2 = 0;
-	kinetic = 0;
+	kinetic = oRingBefore = oRingAfter = 0;
+	for (Term& term : terms) term.before = term.after = 0;
 	int lost = -1;
 	for (int k = 0; k < rings; ++k) {
 		kinetic += kineticPart[k];
 		dampedWork += dampedPart[k];
-		oRingWork += oRingPart[k];
-		for (std::size_t t = 0; t < terms.size(); ++t) terms[t].work += workPart[t][k];
+		oRingBefore += oRingPart[k].before;
+		oRingAfter += oRingPart[k].after;
+		if (workOf[k] >= 0) {
+			terms[workOf[k]].before += workPart[k].before;
+			terms[workOf[k]].after += workPart[k].after;
+		}
 		if (lost < 0 && !(square[k] * dt * dt < limit * limit))
 			for (int i = 0; i < n && lost < 0; ++i)
 				if (!(velocity.get(k, i).squaredNorm() * dt * dt < limit * limit)) lost = k * n + i;

@@ -16,8 +16,9 @@ public:
 	struct Term {
 		const RingField* force = nullptr; ///< null: none
 		int first = 0, last = -1;         ///< rings that it acts on
-		double work = 0; ///< added up by move() (J): force times the mean of the velocities before and after, dt/2 each, so that the sum over
-		                 ///< steps is the trapezoidal rule in force and displacement
+		/// Work of the last move() (J), by the trapezoidal rule in force and displacement: half of it belongs to the way that led to these positions, half
+		/// to the one that leads on.
+		double before = 0, after = 0;
 	};
 
 	MembraneRows() = default;
@@ -44,7 +45,8 @@ public:
 	double fastest = 0;        ///< of the last step (m/s)
 	double kinetic = 0;        ///< by the velocities before the last step (J)
 	double dampedWork = 0;     ///< since last reset (J)
-	double oRingWork = 0;      ///< done on the membrane by the O-rings since last reset (J), trapezoidal
+	double oRingBefore = 0;    ///< work of the O-rings on the membrane in the last step (J), as Term::before, and what brings their particles to speed
+	double oRingAfter = 0;     ///< as Term::after
 
 private:
 	bool isORing(int k) const { return k < oRings || k >= stencil.rings - oRings; }
