@@ -23,7 +23,7 @@ import numpy
 import yade
 from yade import O, utils
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))  # YADE runs scripts without their __file__
 from table import write  # noqa: E402
 
 from hexmembrane import packing_file  # noqa: E402
@@ -32,7 +32,7 @@ from hexmembrane.platens import platen  # noqa: E402
 from hexmembrane.specimen import make  # noqa: E402
 
 RADIUS, HEIGHT, PRESSURE, EMOD = 0.02, 0.08, 5e4, 6e7
-STUDY = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "examples", "paper", "flexible-100.yaml")
+STUDY = os.path.join(sys.path[0], "..", "..", "examples", "paper", "flexible-100.yaml")
 WINDOW, WINDOWS, WARM = 200, 7, 5000
 
 

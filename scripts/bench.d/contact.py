@@ -36,7 +36,7 @@ from yade import (
 	utils,
 )
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))  # YADE runs scripts without their __file__
 from table import write  # noqa: E402
 
 WARM, STEPS, TURNS = 50, 150, 7

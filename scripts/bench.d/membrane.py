@@ -27,7 +27,7 @@ from yade import (
 )
 from yade.wrapper import HexMembrane, MembraneBonds, MembranePressure
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))  # YADE runs scripts without their __file__
 from table import write  # noqa: E402
 
 WARM, STEPS, TURNS = 100, 150, 5

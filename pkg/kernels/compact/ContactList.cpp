@@ -47,6 +47,8 @@ void ContactList::rebuild(NearPairs found, const std::vector<int>& newIndex, con
 	old.bits.swap(bits);
 
 	pairs = std::move(found);
+	usedRows = int(pairs.start.size()) - 1;
+	while (usedRows > 0 && pairs.start[usedRows - 1] == pairs.start[usedRows]) --usedRows;
 	memories.resize(pairs.other.size());
 	bits.assign(pairs.other.size(), 0);
 	const long rows = long(pairs.start.size()) - 1;
@@ -90,7 +92,7 @@ SweepSums ContactList::sweepRun(int from, int to, int owned, const std::vector<P
 
 SweepSums ContactList::sweep(const std::vector<Place>& places, const std::vector<Motion>& motions, std::vector<Load>& loads, double dt, int threads)
 {
-	const int rows = int(pairs.start.size()) - 1, all = int(places.size());
+	const int rows = usedRows, all = int(places.size());
 	if (rows <= 0) return {};
 	if (threads <= 1) return sweepRun(0, rows, all, places, motions, loads.data(), nullptr, dt);
 
@@ -98,7 +100,8 @@ SweepSums ContactList::sweep(const std::vector<Place>& places, const std::vector
 	std::vector<int> border(threads + 1, rows);
 	border[0] = 0;
 	for (int t = 1; t < threads; ++t)
-		border[t] = int(std::lower_bound(pairs.start.begin(), pairs.start.end() - 1, long(pairs.other.size()) * t / threads) - pairs.start.begin());
+		border[t] =
+		        int(std::lower_bound(pairs.start.begin(), pairs.start.begin() + rows, long(pairs.other.size()) * t / threads) - pairs.start.begin());
 	spills.resize(threads);
 	std::vector<SweepSums> sums(threads);
 #pragma omp parallel num_threads(threads)

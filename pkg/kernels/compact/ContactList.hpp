@@ -50,6 +50,7 @@ private:
 	                   double dt);
 
 	NearPairs pairs;
+	int usedRows = 0; ///< rows up to the last one with a pair: the membrane's particles seldom have any
 	std::vector<ContactMemory> memories;
 	std::vector<unsigned char> bits;
 	std::vector<std::vector<Load>> spills; ///< one a thread

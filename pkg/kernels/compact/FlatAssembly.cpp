@@ -4,6 +4,7 @@
 #include "kernels/Check.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -128,7 +129,7 @@ void FlatAssembly::findPairs(NearPairs& general, std::vector<NormalList::Pair>& 
 	if (all == grainCount) return;
 
 	for (int m = grainCount; m < all; ++m) largestParticle = std::max(largestParticle, places[m].radius);
-	std::vector<std::vector<int>> extra(all); // pairs with particles that need memory
+	std::vector<std::array<int, 2>> extra; // pairs with particles that need memory
 	if (grainCount > 0) {
 		CellGrid grid(low, high, largest + std::max(largest, largestParticle) + gap);
 		grid.fill(centres);
@@ -144,7 +145,7 @@ void FlatAssembly::findPairs(NearPairs& general, std::vector<NormalList::Pair>& 
 				if (isSmooth(i, m))
 					frictionless.push_back({i, m});
 				else
-					extra[i].push_back(m);
+					extra.push_back({i, m});
 		}
 	}
 	if (bondedNeighbours) {
@@ -159,14 +160,17 @@ void FlatAssembly::findPairs(NearPairs& general, std::vector<NormalList::Pair>& 
 		const NearPairs own = findNearPairs(particles, sizes, gap, least, most);
 		for (int a = 0; a + 1 < int(own.start.size()); ++a)
 			for (int p = own.start[a]; p < own.start[a + 1]; ++p)
-				if (!bondedNeighbours(a, own.other[p])) extra[grainCount + a].push_back(grainCount + own.other[p]);
+				if (!bondedNeighbours(a, own.other[p])) extra.push_back({grainCount + a, grainCount + own.other[p]});
 	}
+	if (extra.empty()) return;
 	// particles' indices are above all grains': appended to a row they leave it ascending
+	std::sort(extra.begin(), extra.end());
 	NearPairs merged;
 	merged.start.assign(1, 0);
+	auto next = extra.begin();
 	for (int i = 0; i < all; ++i) {
 		merged.other.insert(merged.other.end(), general.other.begin() + general.start[i], general.other.begin() + general.start[i + 1]);
-		merged.other.insert(merged.other.end(), extra[i].begin(), extra[i].end());
+		for (; next != extra.end() && (*next)[0] == i; ++next) merged.other.push_back((*next)[1]);
 		merged.start.push_back(int(merged.other.size()));
 	}
 	general = std::move(merged);

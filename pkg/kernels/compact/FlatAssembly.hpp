@@ -99,7 +99,12 @@ public:
 private:
 	void sortGrains(std::vector<int>& newIndex);
 	void findPairs(NearPairs& general, std::vector<NormalList::Pair>& frictionless) const;
-	bool isSmooth(int i, int j) const { return normalOnly(lawOf(i, j)); }
+	/// Whether a contact of these two has neither friction nor rolling resistance.
+	bool isSmooth(int i, int j) const
+	{
+		const ContactMaterial &a = materials[material[i]], &b = materials[material[j]];
+		return !(std::min(a.friction, b.friction) > 0) && !(std::min(a.rollingFriction, b.rollingFriction) > 0);
+	}
 
 	int grainCount = 0;
 	double gap = 0, fastest = 0;
