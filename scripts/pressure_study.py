@@ -46,7 +46,7 @@ def consolidated(config, out):
 def main(packing, out):
 	paper = configuration.load(pathlib.Path(sys.argv[0]).resolve().parents[1] / "examples" / "paper" / "flexible-100.yaml")
 	own = {"packing": str(pathlib.Path(packing).resolve()), "gradation": None, "grains": None, "cutBelow": None, "cutAbove": None}
-	paper = configuration.derived(paper, {"specimen": own, "output": {"energy": False, "vtkEvery": 0}})
+	paper = configuration.derived(paper, {"specimen": own, "membrane": {"thickness": 3e-4}, "output": {"energy": False, "vtkEvery": 0}})
 	lines = [
 		"| R [mm] | sigma3 [kPa] | settings | main body | beside platens | whole | membrane's own share | main body without it | R/(Rc - R) |",
 		"| --- | --- | --- | --- | --- | --- | --- | --- | --- |",
