@@ -26,6 +26,17 @@ void CompactLoop::forEachContact(Visit&& visit) const
 		        [&](int i, const ContactMemory& memory, unsigned char bits) { visit(boundaryIds[b], flat.id[i], memory, bits); });
 }
 
+void CompactLoop::forgetStored()
+{
+	contactIds.clear();
+	contactBits.clear();
+	contactShear.clear();
+	contactMoment.clear();
+	contactNormal.clear();
+	contactTensile.clear();
+	contactStrength.clear();
+}
+
 void CompactLoop::storeContacts()
 {
 	order.assign(flat.id.begin(), flat.id.begin() + flat.grains());
@@ -37,13 +48,7 @@ void CompactLoop::storeContacts()
 		listedBoundaryRadii.push_back(boundary.solid.radius);
 	}
 	travelled = flat.travelled;
-	contactIds.clear();
-	contactBits.clear();
-	contactShear.clear();
-	contactMoment.clear();
-	contactNormal.clear();
-	contactTensile.clear();
-	contactStrength.clear();
+	forgetStored();
 	forEachContact([&](int a, int b, const ContactMemory& memory, unsigned char bits) {
 		contactIds.emplace_back(a, b);
 		contactBits.push_back(bits);
@@ -115,7 +120,7 @@ void CompactLoop::restoreContacts()
 		memory.law.shearStrength = contactStrength[c];
 		putContact(contactIds[c][0], contactIds[c][1], memory, static_cast<unsigned char>(contactBits[c]));
 	}
-	contactIds.clear();
+	forgetStored();
 }
 
 // What the reference tier left: contacts go on with their forces and moments.

@@ -3,7 +3,6 @@
 
 #include "kernels/Check.hpp"
 #include "kernels/RadialForce.hpp"
-#include "kernels/compact/CriticalStep.hpp"
 
 #include <core/Scene.hpp>
 

@@ -56,6 +56,7 @@ private:
 
 	// CompactContacts.cpp: contacts between the arrays, saved attributes and O.interactions
 	void storeContacts();
+	void forgetStored();
 	void continueLists();
 	void restoreContacts();
 	void indexSpheres();
@@ -78,6 +79,7 @@ private:
 	vector<const LinearMat*> materials;
 	size_t collectedBodies = 0;
 	const HexMembrane* collectedMembrane = nullptr;
+	const Scene* collectedScene = nullptr;
 	bool collected = false;
 	int threads = 1;
 	Real lastDt = 0;

@@ -207,6 +207,8 @@ bool CompactLoop::refreshBodies()
 void CompactLoop::takeScene()
 {
 	const HexMembrane* membrane = bonds ? bonds->membrane.get() : nullptr;
+	if (collectedScene != scene) collected = false; // the engine was put into another scene: what it remembers is of no use there
+	collectedScene = scene;
 	if (!collected || collectedBodies != scene->bodies->size() || collectedMembrane != membrane || !refreshBodies()) collect();
 	refreshMaterials();
 	flat.setSkin(usedSkin());

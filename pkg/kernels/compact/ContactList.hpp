@@ -42,7 +42,6 @@ public:
 	bool restore(int i, int j, const ContactMemory& memory, unsigned char bit);
 
 	int size() const { return int(pairs.other.size()); }
-	const NearPairs& list() const { return pairs; }
 
 private:
 	int find(int i, int j) const;
