@@ -24,24 +24,13 @@ import yade
 from yade import O, utils
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))  # YADE runs scripts without their __file__
+from study import HEIGHT, RADIUS, packing  # noqa: E402
 from table import write  # noqa: E402
 
-from hexmembrane import packing_file  # noqa: E402
-from hexmembrane.config import load  # noqa: E402
 from hexmembrane.platens import platen  # noqa: E402
-from hexmembrane.specimen import make  # noqa: E402
 
-RADIUS, HEIGHT, PRESSURE, EMOD = 0.02, 0.08, 5e4, 6e7
-STUDY = os.path.join(sys.path[0], "..", "..", "examples", "paper", "flexible-100.yaml")
+PRESSURE, EMOD = 5e4, 6e7
 WINDOW, WINDOWS, WARM = 200, 7, 5000
-
-
-def packing(folder):
-	"""The study's packing, made once for a folder."""
-	path = os.path.join(folder, "packing.txt")
-	if not os.path.isfile(path):
-		packing_file.save(make(load(STUDY), print), path)
-	return packing_file.load(path)
 
 
 def material(tier, label, friction, rolling, bonded=False):

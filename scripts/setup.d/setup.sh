@@ -3,7 +3,7 @@
 # benchmarks too). Afterwards the array `entry` holds the words before a command that is to run beside YADE.
 set -euo pipefail
 # shellcheck source=/dev/null
-for _part in common apt root native; do . "$(dirname "${BASH_SOURCE[0]}")/$_part.sh"; done
+for _part in common apt root native lammps; do . "$(dirname "${BASH_SOURCE[0]}")/$_part.sh"; done
 
 # Where YADE comes from: sets host (native or root), yadeSource and entry.
 chooseHost() {
