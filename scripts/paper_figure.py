@@ -25,7 +25,7 @@ COLOURS = {50: "#1f4e79", 100: "#b5561c", 150: "#3a7d44"}
 def line(name, table, start, shear):
 	"""One line of the table."""
 	peak = int(numpy.argmax(shear["q"]))
-	target = shear["sigma3_applied"][0]
+	target = shear["sigma3_target"][0]
 	arrives = 100 * shear["sigma3_transmitted_group3"] / target
 	own = 100 * shear["sigma3_membrane"] / target
 	return (

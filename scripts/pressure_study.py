@@ -15,7 +15,7 @@ from hexmembrane import config as configuration, records, scene, stages
 from hexmembrane.run import run
 from yade import O
 
-STUDY = {"membrane": {"surface": "centre", "areaRule": "cube", "gain": 0.0}}
+STUDY = {"membrane": {"surface": "centre", "areaRule": "cube", "gain": 0.0, "pressureGain": 0.0, "platenRows": 2}}
 SIZES = (1.25e-3, 1.0e-3, 0.75e-3, 0.5e-3, 0.25e-3)
 PRESSURES = (5e4, 1e5, 1.5e5)
 
@@ -53,7 +53,7 @@ def main(packing, out):
 	]
 	for name, config in tests(paper):
 		row, radius = consolidated(config, pathlib.Path(out) / name)
-		target = row["sigma3_applied"]
+		target = row["sigma3_target"]
 		share = [100 * row[f"sigma3_transmitted_{group}"] / target for group in ("group3", "group2", "all")]
 		tension = 100 * row["sigma3_membrane"] / target
 		expected = 100 * radius / row["mean_radius"]

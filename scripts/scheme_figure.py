@@ -49,6 +49,7 @@ def compute(name, folder):
 	"""Both profiles of a scheme: consolidated and sheared."""
 	settings = config.load(ROOT / "examples" / "quick.yaml")
 	settings.specimen.grains, settings.shear.strain = GRAINS, STRAIN
+	settings.membrane.pressureGain = 0.0  # what a scheme does, not what a closed loop makes of it
 	settings.output.records, settings.output.vtkEvery, settings.output.checkpointEvery = 24, 0, 0
 	if name == "held":
 		settings.consolidation.unbalanced = HELD_UNBALANCED
@@ -84,7 +85,7 @@ def draw(results, path):
 			axes.stairs(1e-3 * numpy.array(found["radial"]), edges, orientation="horizontal", baseline=None, color="#b5541c", lw=1.6, label="soil, radial")
 			pressure = 1e-3 * numpy.array(found["rowPressure"])
 			axes.plot(pressure[held], rows[held], color="0.3", lw=1.0, marker="o", ms=2.6, label="membrane on soil, row by row")
-			axes.axvline(1e-3 * found["row"]["sigma3_applied"], color="k", lw=1.2, ls=":", label="applied pressure", zorder=3)
+			axes.axvline(1e-3 * found["row"]["sigma3_target"], color="k", lw=1.2, ls=":", label="pressure asked for", zorder=3)
 			axes.set_ylim(0, 1)
 			axes.grid(color="0.92")
 			axes.set_axisbelow(True)

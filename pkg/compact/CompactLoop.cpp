@@ -124,11 +124,12 @@ void CompactLoop::membraneForces()
 	if (pressure) {
 		hexmembrane::TubePressure& kernel = *pressure->membraneKernel();
 		hexmembrane::requireFinite("MembranePressure.pressure", pressure->pressure, "Pa");
-		kernel.compute(pressure->pressure, x);
+		pressure->closeLoop([this]() { return transmittedByGroup(3); });
+		kernel.compute(pressure->applied(), x);
 		terms.push_back({&kernel.force, kernel.firstRing(), kernel.lastRing()});
 	}
 	if (radialServo) {
-		radialServo->computeForces(x, [this]() { return transmittedByGroup2(); });
+		radialServo->computeForces(x, [this]() { return transmittedByGroup(2); });
 		// the rings of group 2, below and above the main body
 		const auto& rings = radialServo->rows;
 		const int lower = static_cast<int>(rings.size()) / 2;
@@ -138,12 +139,13 @@ void CompactLoop::membraneForces()
 }
 
 // As HexMembrane::transmittedPressure, from the arrays: what the particles press on others, inwards, over their rings' area.
-Real CompactLoop::transmittedByGroup2() const
+Real CompactLoop::transmittedByGroup(int group) const
 {
 	const auto tube = collectedMembrane->stencil();
 	const hexmembrane::RingField& x = bonds->bondKernel().position;
 	Real force = 0, area = 0;
-	for (int k : radialServo->rows) {
+	for (int k = 0; k < tube.rings; ++k) {
+		if (collectedMembrane->groupOfRing(k) != group) continue;
 		const Vector3r centre = hexmembrane::ringShape(tube, x, k).centre;
 		area += tube.perRing * hexmembrane::particleArea(tube, x, k, collectedMembrane->sphereRadius, hexmembrane::AreaRule::tributary);
 		for (int i = 0; i < tube.perRing; ++i) {

@@ -36,7 +36,7 @@ private:
 	void bookWorks();
 	void bookEnergies(Real elastic);
 	[[noreturn]] void stopLost(Body::id_t id) const;
-	Real transmittedByGroup2() const;
+	Real transmittedByGroup(int group) const;
 
 	// CompactScene.cpp: between YADE's bodies and the arrays
 	void takeScene();

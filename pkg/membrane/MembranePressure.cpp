@@ -3,6 +3,7 @@
 
 #include "Scatter.hpp"
 #include "kernels/Check.hpp"
+#include "kernels/FactorLoop.hpp"
 
 namespace yade {
 
@@ -42,6 +43,13 @@ void MembranePressure::prepareMesh()
 void MembranePressure::prepare()
 {
 	hexmembrane::requireFinite("MembranePressure.pressure", pressure, "Pa");
+	hexmembrane::requireNonNegative("MembranePressure.gain", gain, "1");
+	if (gain > 0) {
+		if (!membrane) hexmembrane::reject("MembranePressure.gain", gain, "a mesh of your own has no transmitted pressure to close the loop with", "0");
+		if (iterPeriod < 1) hexmembrane::reject("MembranePressure.iterPeriod", iterPeriod, "must be at least one step", "500, say");
+		if (!(maxFactor > 1) || !math::isfinite(maxFactor))
+			hexmembrane::reject("MembranePressure.maxFactor", maxFactor, "leaves no room for corrections", "a number above 1");
+	}
 	const bool sameOffset = builtOffset == surfaceOffset || (math::isnan(builtOffset) && math::isnan(surfaceOffset));
 	if (!vertexIds.empty() && builtFor == membrane.get() && builtSurface == surface && sameOffset && builtIds == ids && builtTriangles == triangles) return;
 
@@ -82,12 +90,20 @@ void MembranePressure::computeMesh()
 	mesh.compute(pressure, positions, force);
 }
 
+void MembranePressure::closeLoop(const std::function<Real()>& transmittedNow)
+{
+	if (!(gain > 0) || scene->iter % iterPeriod != 0) return;
+	transmitted = transmittedNow();
+	factor = hexmembrane::correctedFactor(factor, gain, pressure, transmitted, 1 / maxFactor, maxFactor, saturated);
+}
+
 void MembranePressure::action()
 {
 	prepare();
 	if (tube) {
+		closeLoop([this]() { return membrane->transmittedPressure(3); });
 		membrane->gather(*scene, "MembranePressure", rows);
-		tube->compute(pressure, rows);
+		tube->compute(applied(), rows);
 	} else
 		computeMesh();
 

@@ -3,6 +3,7 @@
 
 #include "Scatter.hpp"
 #include "kernels/Check.hpp"
+#include "kernels/FactorLoop.hpp"
 #include "kernels/RadialForce.hpp"
 #include "kernels/WorkMeter.hpp"
 
@@ -32,10 +33,7 @@ void MembraneRadialServo::prepare()
 void MembraneRadialServo::correct(Real measured)
 {
 	transmitted = measured;
-	if (pressure == 0) return;
-	const Real wanted = factor + gain * (pressure - transmitted) / pressure;
-	factor = std::min(std::max(wanted, 0.), maxFactor);
-	saturated = factor != wanted;
+	factor = hexmembrane::correctedFactor(factor, gain, pressure, measured, 0, maxFactor, saturated);
 }
 
 void MembraneRadialServo::computeForces(const hexmembrane::RingField& x, const std::function<Real()>& transmittedNow)

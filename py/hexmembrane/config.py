@@ -84,7 +84,9 @@ class Membrane:
 		"outside", "inner surface ('outside') or centres ('centred') on the specimen's surface", "", choices=("outside", "centred")
 	)
 	oRingRows: int = key(2, "rows at each end, beyond the specimen, held by the O-rings (group 1)", "", low=1, high=50)
-	platenRows: int = key(2, "rows beside each platen, pressed radially (group 2)", "", low=0, high=50)
+	platenRows: Optional[int] = key(
+		None, "rows beside each platen, pressed radially (group 2); none: as many as cover the smallest grain, 2 at least", "", low=0, high=50
+	)
 	young: float = key(1.0e6, "Young's modulus of the membrane's material", "Pa", low=0, openLow=True)
 	thickness: float = key(
 		3e-4, "thickness of the material; only young * thickness matters, twice pressure * grain radius or more", "m", low=0, openLow=True
@@ -98,6 +100,13 @@ class Membrane:
 		"tributary", "area of a particle of group 2: 2 sqrt(3) R^2 or the circumscribed cube's (2R)^2", "", choices=("tributary", "cube")
 	)
 	gain: float = key(0.05, "gain of the loop that brings group 2's transmitted pressure to the target, 0: open loop", "", low=0, high=1)
+	pressureGain: float = key(
+		0.2,
+		"the same of the main body, whose own tension presses on the soil too; 0: the pressure asked for is on the membrane",
+		"",
+		low=0,
+		high=1,
+	)
 
 	def check(self, path):
 		if self.tensionOnly and self.poisson < 0.333333:

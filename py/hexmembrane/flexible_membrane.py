@@ -19,6 +19,18 @@ from hexmembrane.lateral import Parts, only
 MASK = 2
 
 
+def platenRows(wished, particleRadius, smallest):
+	"""Rows beside each platen: as wished, or as many as stand beside the smallest grain (rows are sqrt(3) R apart), 2 at least.
+
+	A fine membrane leaves the O-ring's radius over about a grain; rows that all lie in this neck do not reach the soil, however hard they are pressed.
+
+	:param particleRadius: R [m]. :param smallest: the smallest grain's radius [m], nan: unknown.
+	"""
+	if wished is not None:
+		return wished
+	return max(2, math.ceil(2 * smallest / (math.sqrt(3) * particleRadius))) if smallest > 0 else 2
+
+
 def generate(config, particleRadius, smallest):
 	"""A membrane as configured, generated, with a material of its own.
 
@@ -33,7 +45,7 @@ def generate(config, particleRadius, smallest):
 		particleRadius=particleRadius,
 		placement=given.placement,
 		oRingRows=given.oRingRows,
-		platenRows=given.platenRows,
+		platenRows=platenRows(given.platenRows, particleRadius, smallest),
 		density=given.density,
 		material=O.materials["membrane"],
 		smallestGrain=smallest,
@@ -68,7 +80,7 @@ class FlexibleMembrane:
 		def engines(bottom, top):
 			before = [
 				yade.MembraneBonds(membrane=membrane, kn=kn, ks=ks, tensionOnly=given.tensionOnly),
-				yade.MembranePressure(membrane=membrane, pressure=0.0, surface=given.surface),
+				yade.MembranePressure(membrane=membrane, pressure=0.0, surface=given.surface, gain=given.pressureGain),
 				yade.MembraneRadialServo(membrane=membrane, pressure=0.0, areaRule=given.areaRule, gain=given.gain),
 			]
 			return before, [yade.MembraneORings(membrane=membrane, mode=given.oRings, bottomPlaten=bottom, topPlaten=top)]
@@ -105,6 +117,10 @@ class FlexibleMembrane:
 	@property
 	def pressure(self):
 		return self.pressing.pressure
+
+	@property
+	def applied(self):
+		return self.pressing.applied
 
 	def setPressure(self, pressure):
 		self.pressing.pressure = pressure
@@ -175,7 +191,7 @@ class FlexibleMembrane:
 			"velocity": v,
 			"displacement": u,
 			"normal_displacement": (u * vtk.normals(x - u, triangles)).sum(axis=1),
-			"pressure": numpy.where(group == 1, 0.0, numpy.where(group == 2, self.servo.pressure, self.pressing.pressure)),
+			"pressure": numpy.where(group == 1, 0.0, numpy.where(group == 2, self.servo.factor * self.servo.pressure, self.applied)),
 		}
 		vtk.write(path, x, triangles, points, {"group": group[triangles].min(axis=1)})
 

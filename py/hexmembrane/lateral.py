@@ -6,6 +6,7 @@ type name. Its instances are the handles that stages, records and frames use, wi
 
 ============================ ==========================================================================================
 ``pressure``, ``setPressure`` confining pressure asked for [Pa], positive inwards
+``applied``                   pressure [Pa] that is on the boundary now to bring that to the soil
 ``setMaxVelocity(speed)``     largest speed of a servo's motion [m/s]
 ``setTimeLimit(limit)``       time that a servo has to reach its target once [s], nan: any
 ``meanRadius()``              of the inner surface [m]

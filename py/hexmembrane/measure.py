@@ -96,7 +96,8 @@ def row(scene, grains, reference, stage, elapsed):
 		"axial_strain": -dz,
 		"q": q,
 		"axial_stress": q + pressure,
-		"sigma3_applied": pressure,
+		"sigma3_target": pressure,
+		"sigma3_applied": lateral.applied,
 		"sigma3_transmitted_group3": lateral.transmitted(3),
 		"sigma3_transmitted_group2": lateral.transmitted(2),
 		"sigma3_transmitted_all": lateral.transmitted(0),
@@ -116,7 +117,7 @@ def row(scene, grains, reference, stage, elapsed):
 		"elapsed": round(elapsed, 2),
 		**_energies(energies, reference.energies),
 		**carried,
-		"q_corrected": correction.corrected(sum(forces) / 2, pressure, volume / height, carried),
+		"q_corrected": correction.corrected(sum(forces) / 2, lateral.applied, volume / height, carried),
 	}
 
 

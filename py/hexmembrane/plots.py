@@ -43,16 +43,17 @@ def plot(recordsPath, pngPath, title=""):
 	middle.set_ylabel("volumetric strain [%]\n(dilation positive)")
 	middle.legend(frameon=False, fontsize="small")
 
-	applied = column("sigma3_applied", 1e-3)
+	target = column("sigma3_target", 1e-3)
 	lower.plot(strain, column("sigma3_transmitted_group3", 1e-3), color="#1f4e79", lw=1.4, label="transmitted, group 3")
 	lower.plot(strain, column("sigma3_transmitted_all", 1e-3), color="#b5541c", lw=1.2, ls="--", label="transmitted, all")
-	lower.plot(strain, applied, color="0.25", lw=1.0, label="applied")
-	low, high = [0.95 * p for p in applied], [1.05 * p for p in applied]
-	lower.fill_between(strain, low, high, color="0.94", zorder=0, label="applied \N{PLUS-MINUS SIGN} 5 %")
+	lower.plot(strain, column("sigma3_applied", 1e-3), color="#3a7d44", lw=1.0, label="applied")
+	lower.plot(strain, target, color="0.25", lw=1.0, label="target")
+	low, high = [0.95 * p for p in target], [1.05 * p for p in target]
+	lower.fill_between(strain, low, high, color="0.94", zorder=0, label="target \N{PLUS-MINUS SIGN} 5 %")
 	lower.margins(y=0.3)
 	lower.set_ylabel("confining pressure [kPa]")
 	lower.set_xlabel("axial strain [%]")
-	lower.legend(frameon=False, fontsize="small", ncols=4, loc="upper center", columnspacing=1.2)
+	lower.legend(frameon=False, fontsize="small", ncols=3, loc="upper center", columnspacing=1.2)
 	for axes in (upper, middle, lower):
 		axes.grid(color="0.92")
 		axes.set_axisbelow(True)

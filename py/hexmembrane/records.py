@@ -40,9 +40,14 @@ COLUMNS = (
 	Column(
 		"axial_stress",
 		"Pa",
-		"q + sigma3_applied, at mid-height by the balance of forces on half the specimen; compression positive",
+		"q + sigma3_target, at mid-height by the balance of forces on half the specimen; compression positive",
 	),
-	Column("sigma3_applied", "Pa", "pressure asked of the membrane, or mean radial stress of the rigid wall; pushes inwards"),
+	Column("sigma3_target", "Pa", "sigma3: pressure asked for, that the soil is to receive; pushes inwards"),
+	Column(
+		"sigma3_applied",
+		"Pa",
+		"pressure on the membrane's main body: sigma3 with membrane.pressureGain 0, else what brings the transmitted pressure to it; of a rigid wall sigma3",
+	),
 	Column(
 		"sigma3_transmitted_group3",
 		"Pa",

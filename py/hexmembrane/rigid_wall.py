@@ -59,6 +59,10 @@ class RigidWall:
 	def pressure(self):
 		return self.servo.stress
 
+	@property
+	def applied(self):
+		return self.servo.stress
+
 	def setPressure(self, pressure):
 		self.servo.stress = pressure
 

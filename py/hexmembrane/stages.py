@@ -204,7 +204,7 @@ class Test:
 
 	def _atRest(self, rampTime):
 		given = self.config.consolidation
-		ramped = O.time - self.begun["time"] >= rampTime and self.last["sigma3_applied"] == given.pressure
+		ramped = O.time - self.begun["time"] >= rampTime and self.last["sigma3_target"] == given.pressure
 		return ramped and self.last["unbalanced"] < given.unbalanced and max(self._errors().values()) < given.tolerance
 
 	def _consolidationDone(self, rampTime):

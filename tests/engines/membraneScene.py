@@ -45,3 +45,35 @@ def stateOf(ids):
 	from yade import O
 
 	return np.array([tuple(O.bodies[i].state.pos) + tuple(O.bodies[i].state.vel) + tuple(O.bodies[i].state.angVel) for i in ids])
+
+
+def pressOnCore(m, group, *engines, steps=3000):
+	"""Run a membrane (mask 3) whose particles of a group stand against fixed spheres, radially inside, with engines that press and hold it."""
+	import yade
+	from yade import (
+		Bo1_Sphere_Aabb,
+		ForceResetter,
+		Ig2_Sphere_Sphere_ScGeom,
+		InsertionSortCollider,
+		InteractionLoop,
+		Ip2_FrictMat_FrictMat_FrictPhys,
+		Law2_ScGeom_FrictPhys_CundallStrack,
+		NewtonIntegrator,
+		O,
+		utils,
+	)
+
+	for i, g in zip(m.ids, m.groups):
+		if g == group:
+			x = O.bodies[i].state.pos
+			inward = -yade.Vector3(x[0], x[1], 0).normalized()
+			O.bodies.append(utils.sphere(x + inward * 2 * m.sphereRadius, m.sphereRadius, fixed=True))
+	O.engines = [
+		ForceResetter(),
+		InsertionSortCollider([Bo1_Sphere_Aabb()], avoidSelfInteractionMask=2, verletDist=1e-4),
+		InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_FrictMat_FrictMat_FrictPhys()], [Law2_ScGeom_FrictPhys_CundallStrack()]),
+		*engines,
+		NewtonIntegrator(damping=0.5),
+	]
+	O.dt = 0.2 * (O.bodies[m.ids[200]].state.mass / (1e8 * m.sphereRadius)) ** 0.5
+	O.run(steps, True)

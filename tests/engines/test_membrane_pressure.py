@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from membraneScene import forcesOn, makeMembrane, positions, shake, stateOf
+from membraneScene import forcesOn, makeMembrane, positions, pressOnCore, shake, stateOf
 
 P = 1e5
 
@@ -123,6 +123,31 @@ def test_saveAndLoadContinueExactly(O, tmp_path):
 	assert (stateOf(O.engines[2].membrane.ids) == whole).all() and O.engines[2].work == work and work > 0
 
 
+def test_closedLoopReachesItsTarget(O):
+	"""A stiff frictionless core, pressure on the triangles of the centres: Rc/(Rc - R) too much arrives, and the loop takes it away."""
+	from yade.wrapper import MembraneBonds, MembranePressure
+
+	m = makeMembrane(mask=3)
+	pressure = MembranePressure(membrane=m, pressure=P, surface="centre", gain=0.1, iterPeriod=20)
+	pressOnCore(m, 3, MembraneBonds(membrane=m, kn=1e4), pressure)
+	assert m.transmittedPressure(3) == pytest.approx(P, rel=5e-3)
+	assert pressure.factor == pytest.approx(m.innerRadius / m.centreRadius, rel=0.01)
+	assert pressure.applied == pressure.factor * P and not pressure.saturated
+
+
+def test_closedLoopStopsAtItsLimit(O):
+	"""Nothing inside to press on: the factor stays within its limits and says so."""
+	from yade.wrapper import MembranePressure
+
+	m = makeMembrane()
+	pressure = MembranePressure(membrane=m, pressure=P, gain=0.5, iterPeriod=1, maxFactor=1.25)
+	O.engines = engines(pressure)
+	O.dt = 1e-9
+	O.step()
+	O.step()
+	assert pressure.saturated and pressure.factor == 1.25 and pressure.transmitted == 0
+
+
 def bad(**arguments):
 	from yade.wrapper import MembranePressure
 
@@ -137,6 +162,10 @@ BAD = [
 	(lambda m: bad(membrane=m, pressure=1.0, surface="outer"), ValueError, "'inner' or 'centre'"),
 	(lambda m: bad(ids=[0, 1, 2], triangles=[(0, 1, 2)], pressure=1.0), ValueError, "surfaceOffset"),
 	(lambda m: bad(ids=[0, 1, 2], triangles=[(0, 1, 3)], pressure=1.0, surface="centre"), ValueError, "triangles[0] = 3"),
+	(lambda m: bad(membrane=m, pressure=1.0, gain=-0.1), ValueError, "MembranePressure.gain = -0.1"),
+	(lambda m: bad(membrane=m, pressure=1.0, gain=0.1, iterPeriod=0), ValueError, "MembranePressure.iterPeriod = 0"),
+	(lambda m: bad(membrane=m, pressure=1.0, gain=0.1, maxFactor=1.0), ValueError, "MembranePressure.maxFactor = 1"),
+	(lambda m: bad(ids=[0, 1, 2], triangles=[(0, 1, 2)], pressure=1.0, surface="centre", gain=0.1), ValueError, "MembranePressure.gain = 0.1"),
 	(lambda m: bad(ids=[0, 1, 99999], triangles=[(0, 1, 2)], pressure=1.0, surface="centre"), RuntimeError, "body 99999"),
 ]
 

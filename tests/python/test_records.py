@@ -14,7 +14,7 @@ def rowOf(k, stage="shear"):
 	row = {column.name: 0.1 * k + 1e-17 * j + j for j, column in enumerate(COLUMNS)}
 	strain = 0.01 * k
 	row.update(stage=stage, step=1000 * k, axial_strain=strain, q=2e5 * math.tanh(60 * strain), volumetric_strain_radius=0.3 * strain - 0.002)
-	row.update(volumetric_strain_volume=0.28 * strain, sigma3_applied=1e5, sigma3_transmitted_group3=1.01e5, sigma3_transmitted_all=0.99e5)
+	row.update(volumetric_strain_volume=0.28 * strain, sigma3_target=1e5, sigma3_applied=0.98e5, sigma3_transmitted_group3=1.01e5, sigma3_transmitted_all=0.99e5)
 	return row
 
 

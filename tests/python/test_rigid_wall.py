@@ -23,7 +23,7 @@ def test_records(whole):
 	table = records.read(whole[0] / "records.csv")
 	shear = numpy.array([stage == "shear" for stage in table["stage"]])
 	assert abs(table["axial_strain"][shear] - numpy.linspace(0, 0.02, 13)).max() < 1e-4
-	assert (table["sigma3_applied"][shear] == 1e5).all()
+	assert (table["sigma3_target"][shear] == 1e5).all() and (table["sigma3_applied"] == table["sigma3_target"]).all()
 	assert table["q"][shear][-1] > 3e4 and abs(table["q"][shear][0]) < 1e4
 	# The servo holds the mean radial stress while the wall has to follow a fast test.
 	assert abs(table["sigma3_transmitted_all"][shear] / 1e5 - 1).max() < 0.01

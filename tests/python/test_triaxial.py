@@ -36,7 +36,7 @@ def test_records(whole):
 	strain = table["axial_strain"][shear]
 	assert abs(strain - numpy.linspace(0, 0.02, 13)).max() < 1e-4
 	assert (numpy.diff(table["step"]) >= 0).all() and (numpy.diff(table["elapsed"]) >= 0).all()
-	assert (table["sigma3_applied"][shear] == 1e5).all()
+	assert (table["sigma3_target"][shear] == 1e5).all()
 	assert abs(table["q"][shear][0]) < 1e4 and table["q"][shear][-1] > 3e4
 	assert abs(table["sigma3_transmitted_group3"][shear] / 1e5 - 1).max() < 0.1
 	assert (table["bonds_broken"] == 0).all()
@@ -137,7 +137,9 @@ def test_vtkFrames(whole):
 	assert abs(data["displacement"]).max() > 1e-4
 	x, triangles, data, cells = vtk.read(out / "vtk" / "membrane-0002.vtp")
 	assert set(data["group"]) == {1, 2, 3} and set(cells["group"]) == {1, 2, 3} and triangles.max() == len(x) - 1
-	assert set(data["pressure"]) == {0.0, 1e5}
+	# what is on the membrane, not what was asked for: the loops bring the transmitted pressure to that
+	applied = records.read(out / "records.csv")["sigma3_applied"][-1]
+	assert set(data["pressure"][data["group"] == 3]) == {applied} and set(data["pressure"][data["group"] == 1]) == {0.0}
 	# No grain is outside the membrane.
 	assert numpy.hypot(*points[:, :2].T).max() < numpy.hypot(*x[:, :2].T).max()
 
