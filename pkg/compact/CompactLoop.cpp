@@ -166,7 +166,7 @@ void CompactLoop::driveBoundaries()
 			drive->advance(Vector3r::Zero(), [](const Vector3r&) { return 0; }); // says what is wrong with it
 			continue;
 		}
-		drive->advance(flat.onBoundary[b].force, [&](const Vector3r& unit) { return flat.boundaryContacts[b].stiffness(unit); });
+		drive->advance(flat.onBoundary[b].load.force, [&](const Vector3r& unit) { return flat.boundaryContacts[b].stiffness(unit); });
 	}
 	if (wallServo) {
 		const auto at = std::find(boundaryIds.begin(), boundaryIds.end(), wallServo->wall);
@@ -174,7 +174,7 @@ void CompactLoop::driveBoundaries()
 		if (at == boundaryIds.end())
 			wallServo->advance(0, 0);
 		else
-			wallServo->advance(flat.boundaryContacts[b].normalForce(flat.boundaries[b], flat.places), flat.boundaryContacts[b].normalStiffness());
+			wallServo->advance(flat.onBoundary[b].normalForce, flat.onBoundary[b].normalStiffness);
 	}
 }
 

@@ -288,8 +288,8 @@ void CompactLoop::giveScene()
 		scene->forces.addTorque(flat.id[i], torque);
 	}
 	for (size_t b = 0; b < boundaryIds.size() && b < flat.onBoundary.size(); ++b) {
-		scene->forces.addForce(boundaryIds[b], flat.onBoundary[b].force);
-		scene->forces.addTorque(boundaryIds[b], flat.onBoundary[b].torque);
+		scene->forces.addForce(boundaryIds[b], flat.onBoundary[b].load.force);
+		scene->forces.addTorque(boundaryIds[b], flat.onBoundary[b].load.torque);
 	}
 	scene->forces.sync();
 	listsMade = flat.listsMade();

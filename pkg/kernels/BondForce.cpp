@@ -172,17 +172,14 @@ void BondForce::compute(BondState& state, double dt)
 		state.broken.resize(stencil.bondCount(), 0);
 		if (law.ks > 0) state.shear.resize(stencil.bondCount(), Vec3::Zero());
 	}
-	// the rows of all three families are independent: one loop
-	const int rows = 3 * stencil.rings - 2;
+	// all rows are independent; ring by ring, so that a thread stays at the same height as in every other loop over rings
 #pragma omp parallel for schedule(static)
-	for (int r = 0; r < rows; ++r) {
-		const int family = r < stencil.rings ? 0 : r < 2 * stencil.rings - 1 ? 1 : 2;
-		const int k = family == 0 ? r : family == 1 ? r - stencil.rings : r - 2 * stencil.rings + 1;
-		if (central)
-			centralRow(state, family, k);
-		else
-			generalRow(state, family, k, dt);
-	}
+	for (int k = 0; k < stencil.rings; ++k)
+		for (int family = 0; family < (k + 1 < stencil.rings ? 3 : 1); ++family)
+			if (central)
+				centralRow(state, family, k);
+			else
+				generalRow(state, family, k, dt);
 	gather(bondForce, -1., force);
 	if (law.ks > 0) gather(bondTorque, 1., torque);
 }

@@ -34,35 +34,28 @@ void BoundaryContacts::rebuild(std::vector<int> near, const std::vector<int>& ne
 	spheres = std::move(near);
 	bits.assign(spheres.size(), 0);
 	memories.resize(spheres.size());
-	onBoundary.assign(spheres.size(), noLoad());
 	for (std::size_t c = 0; c < spheres.size(); ++c) memories[c] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), law(spheres[c])};
 	old.forEachTouching([&](int i, const ContactMemory& memory, unsigned char bit) { restore(newIndex[i], memory, bit); });
 }
 
-Load BoundaryContacts::sweep(const FlatBoundary& boundary, const std::vector<Place>& places, const std::vector<Motion>& motions, std::vector<Load>& loads,
-                             double dt, int threads, SweepSums& sums)
+void BoundaryContacts::sweep(int from, int to, const FlatBoundary& boundary, const std::vector<Place>& places, const std::vector<Motion>& motions,
+                             std::vector<Load>& loads, double dt, BoundaryLoad& received)
 {
-	const int count = size();
 	const Motion own{boundary.velocity, boundary.spin};
-	std::vector<SweepSums> parts(threads);
-#pragma omp parallel for schedule(static, 1) num_threads(threads) if (threads > 1)
-	for (int t = 0; t < threads; ++t)
-		for (int c = count * long(t) / threads; c < count * long(t + 1) / threads; ++c) {
-			const int i = spheres[c];
-			const FlatBoundary::Touch touch = boundary.touch(places[i]);
-			onBoundary[c] = noLoad();
-			if (touch.u < 0 && !bits[c]) continue;
-			const Vec3 arm1 = touch.point - boundary.solid.centre, arm2 = touch.point - places[i].centre;
-			Vec3 force;
-			if (!advanceMemory(memories[c], bits[c], touch.u, touch.normal, own, arm1, motions[i], arm2, dt, force, parts[t])) continue;
-			const Vec3& moment = memories[c].moment;
-			loads[i] += {force, arm2.cross(force) + moment};
-			onBoundary[c] = {-force, -arm1.cross(force) - moment};
-		}
-	Load sum = noLoad();
-	for (const Load& load : onBoundary) sum += load;
-	for (const SweepSums& part : parts) sums += part;
-	return sum;
+	const auto first = std::lower_bound(spheres.begin(), spheres.end(), from), last = std::lower_bound(first, spheres.end(), to);
+	for (long c = first - spheres.begin(); c < last - spheres.begin(); ++c) {
+		const int i = spheres[c];
+		const FlatBoundary::Touch touch = boundary.touch(places[i]);
+		if (touch.u < 0 && !bits[c]) continue;
+		const Vec3 arm1 = touch.point - boundary.solid.centre, arm2 = touch.point - places[i].centre;
+		Vec3 force;
+		if (!advanceMemory(memories[c], bits[c], touch.u, touch.normal, own, arm1, motions[i], arm2, dt, force, received.sums)) continue;
+		const Vec3& moment = memories[c].moment;
+		loads[i] += {force, arm2.cross(force) + moment};
+		received.load += {-force, -arm1.cross(force) - moment};
+		received.normalForce += memories[c].law.kn * touch.u;
+		received.normalStiffness += memories[c].law.kn;
+	}
 }
 
 double BoundaryContacts::stiffness(const Vec3& along) const
@@ -72,20 +65,6 @@ double BoundaryContacts::stiffness(const Vec3& along) const
 		const double cosine = memory.normal.dot(along), square = cosine * cosine;
 		sum += memory.law.kn * square + memory.law.ks * (1 - square);
 	});
-	return sum;
-}
-
-double BoundaryContacts::normalForce(const FlatBoundary& boundary, const std::vector<Place>& places) const
-{
-	double sum = 0;
-	forEachTouching([&](int i, const ContactMemory& memory, unsigned char) { sum += memory.law.kn * boundary.touch(places[i]).u; });
-	return sum;
-}
-
-double BoundaryContacts::normalStiffness() const
-{
-	double sum = 0;
-	forEachTouching([&](int, const ContactMemory& memory, unsigned char) { sum += memory.law.kn; });
 	return sum;
 }
 

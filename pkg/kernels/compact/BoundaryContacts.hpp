@@ -44,7 +44,23 @@ struct FlatBoundary {
 	}
 };
 
-/// Contacts of one boundary with the spheres near it, by the full law. The boundary is body 1. The same to the last bit for any number of threads.
+/// What a boundary receives in a step: load about its centre, summed normal forces (N) and normal stiffnesses (N/m) of its contacts.
+struct alignas(64) BoundaryLoad {
+	Load load = noLoad();
+	double normalForce = 0, normalStiffness = 0;
+	SweepSums sums;
+
+	BoundaryLoad& operator+=(const BoundaryLoad& other)
+	{
+		load += other.load;
+		normalForce += other.normalForce;
+		normalStiffness += other.normalStiffness;
+		sums += other.sums;
+		return *this;
+	}
+};
+
+/// Contacts of one boundary with the spheres near it, by the full law. The boundary is body 1.
 class BoundaryContacts {
 public:
 	using LawOfSphere = std::function<ContactLaw(int)>;
@@ -53,15 +69,12 @@ public:
 	void rebuild(std::vector<int> near, const std::vector<int>& newIndex, const LawOfSphere& law);
 	void renewLaws(const LawOfSphere& law);
 
-	/// One step: loads of the spheres added, the load on the boundary (about its centre) returned.
-	Load sweep(const FlatBoundary& boundary, const std::vector<Place>& places, const std::vector<Motion>& motions, std::vector<Load>& loads, double dt,
-	           int threads, SweepSums& sums);
+	/// One step of the spheres from .. to - 1: their loads are added, what the boundary receives is added to `received`.
+	void sweep(int from, int to, const FlatBoundary& boundary, const std::vector<Place>& places, const std::vector<Motion>& motions,
+	           std::vector<Load>& loads, double dt, BoundaryLoad& received);
 
 	/// Summed stiffness along a unit vector: sum of kn c^2 + ks (1 - c^2), c the cosine between normal and vector (N/m).
 	double stiffness(const Vec3& along) const;
-	/// Sum of the normal forces and of the normal stiffnesses (N, N/m).
-	double normalForce(const FlatBoundary& boundary, const std::vector<Place>& places) const;
-	double normalStiffness() const;
 	double energy(const FlatBoundary& boundary, const std::vector<Place>& places) const;
 
 	template <typename Visit>
@@ -77,7 +90,6 @@ private:
 	std::vector<int> spheres; ///< ascending
 	std::vector<ContactMemory> memories;
 	std::vector<unsigned char> bits;
-	std::vector<Load> onBoundary; ///< of each contact
 };
 
 } // namespace hexmembrane

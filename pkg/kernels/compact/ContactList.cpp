@@ -47,8 +47,6 @@ void ContactList::rebuild(NearPairs found, const std::vector<int>& newIndex, con
 	old.bits.swap(bits);
 
 	pairs = std::move(found);
-	usedRows = int(pairs.start.size()) - 1;
-	while (usedRows > 0 && pairs.start[usedRows - 1] == pairs.start[usedRows]) --usedRows;
 	memories.resize(pairs.other.size());
 	bits.assign(pairs.other.size(), 0);
 	const long rows = long(pairs.start.size()) - 1;
@@ -58,10 +56,24 @@ void ContactList::rebuild(NearPairs found, const std::vector<int>& newIndex, con
 	old.forEachTouching([&](int i, int j, const ContactMemory& memory, unsigned char bit) { restore(newIndex[i], newIndex[j], memory, bit); });
 }
 
-SweepSums ContactList::sweepRun(int from, int to, int owned, const std::vector<Place>& places, const std::vector<Motion>& motions, Load* loads, Load* spill,
-                                double dt)
+void ContactList::divide(const ThreadRuns& runs)
+{
+	spills.resize(runs.threads());
+	for (int t = 0; t < runs.threads(); ++t) {
+		const auto [from, to] = runs.rowsOf(t);
+		int end = to;
+		for (int p = pairs.start[from]; p < pairs.start[to]; ++p) end = std::max(end, pairs.other[p] + 1);
+		spills[t].resize(end - to);
+	}
+}
+
+SweepSums ContactList::sweep(const ThreadRuns& runs, int t, const std::vector<Place>& places, const std::vector<Motion>& motions, std::vector<Load>& loads,
+                             double dt)
 {
 	SweepSums sums;
+	const auto [from, to] = runs.rowsOf(t);
+	std::vector<Load>& spill = spills[t];
+	std::fill(spill.begin(), spill.end(), noLoad());
 	for (int i = from; i < to; ++i) {
 		const Place a = places[i];
 		const Motion& motion = motions[i];
@@ -81,7 +93,7 @@ SweepSums ContactList::sweepRun(int from, int to, int owned, const std::vector<P
 			const Vec3 turning = normal.cross(memories[p].shear);
 			own.force -= force;
 			own.torque -= arm1 * turning + memories[p].moment;
-			Load& other = j < owned ? loads[j] : spill[j - owned];
+			Load& other = j < to ? loads[j] : spill[j - to];
 			other.force += force;
 			other.torque += memories[p].moment - arm2 * turning;
 		}
@@ -90,42 +102,14 @@ SweepSums ContactList::sweepRun(int from, int to, int owned, const std::vector<P
 	return sums;
 }
 
-SweepSums ContactList::sweep(const std::vector<Place>& places, const std::vector<Motion>& motions, std::vector<Load>& loads, double dt, int threads)
+void ContactList::addSpills(const ThreadRuns& runs, int t, std::vector<Load>& loads) const
 {
-	const int rows = usedRows, all = int(places.size());
-	if (rows <= 0) return {};
-	if (threads <= 1) return sweepRun(0, rows, all, places, motions, loads.data(), nullptr, dt);
-
-	// runs of rows with about the same number of pairs
-	std::vector<int> border(threads + 1, rows);
-	border[0] = 0;
-	for (int t = 1; t < threads; ++t)
-		border[t] =
-		        int(std::lower_bound(pairs.start.begin(), pairs.start.begin() + rows, long(pairs.other.size()) * t / threads) - pairs.start.begin());
-	spills.resize(threads);
-	std::vector<SweepSums> sums(threads);
-#pragma omp parallel num_threads(threads)
-	{
-#pragma omp for schedule(static, 1)
-		for (int t = 0; t < threads; ++t) {
-			int last = border[t + 1];
-			for (int p = pairs.start[border[t]]; p < pairs.start[border[t + 1]]; ++p) last = std::max(last, pairs.other[p] + 1);
-			spills[t].assign(last - border[t + 1], noLoad());
-			sums[t] = sweepRun(border[t], border[t + 1], border[t + 1], places, motions, loads.data(), spills[t].data(), dt);
-		}
-		// spills reach upwards only: the spheres of run t may have some from every run before it
-#pragma omp for schedule(static, 1)
-		for (int t = 1; t <= threads; ++t) {
-			const int from = t < threads ? border[t] : rows, to = t < threads ? border[t + 1] : all;
-			for (int s = 0; s < t; ++s) {
-				const int spillStart = border[s + 1], spillEnd = spillStart + int(spills[s].size());
-				for (int i = std::max(from, spillStart); i < std::min(to, spillEnd); ++i) loads[i] += spills[s][i - spillStart];
-			}
-		}
+	for (int s = 0; s < runs.threads(); ++s) {
+		const int begin = runs.rowsOf(s).to, end = begin + int(spills[s].size());
+		runs.forOwned(t, [&](int from, int to) {
+			for (int i = std::max(from, begin); i < std::min(to, end); ++i) loads[i] += spills[s][i - begin];
+		});
 	}
-	SweepSums sum;
-	for (const auto& part : sums) sum += part;
-	return sum;
 }
 
 double ContactList::energy(const std::vector<Place>& places) const

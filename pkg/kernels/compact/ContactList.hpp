@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Flat.hpp"
+#include "ThreadRuns.hpp"
 #include "kernels/CellGrid.hpp"
 
 #include <functional>
@@ -11,9 +12,8 @@ namespace hexmembrane {
 
 /// Contacts of spheres with spheres by the full law, over a neighbour list that holds each pair once, with the first index the lower.
 ///
-/// With one thread loads are added straight to both spheres. With several, each thread has a run of first indices with about the same number of pairs;
-/// what falls on spheres beyond its run goes to a spill of its own, and the owner adds the spills in the order of the threads: the same bits for the same
-/// number of threads.
+/// With one thread loads are added straight to both spheres. With several, what falls on spheres beyond a thread's rows goes to a spill of its own, and the
+/// owner adds the spills in the order of the threads: the same bits for the same number of threads.
 class ContactList {
 public:
 	using LawOfPair = std::function<ContactLaw(int, int)>;
@@ -25,8 +25,15 @@ public:
 	/// Parameters anew for all pairs (a material has changed); memories and bonds stay.
 	void renewLaws(const LawOfPair& law);
 
-	/// One step. `threads` >= 1. \param energies whether SweepSums are wanted
-	SweepSums sweep(const std::vector<Place>& places, const std::vector<Motion>& motions, std::vector<Load>& loads, double dt, int threads);
+	/// Where the pairs of each sphere begin, one more entry than spheres.
+	const std::vector<int>& rowStart() const { return pairs.start; }
+	/// Makes room for what the threads spill. Once for each list and division.
+	void divide(const ThreadRuns& runs);
+	/// One step of the pairs in thread t's rows; what it does to the spheres of other threads waits for addSpills().
+	SweepSums sweep(const ThreadRuns& runs, int t, const std::vector<Place>& places, const std::vector<Motion>& motions, std::vector<Load>& loads,
+	                double dt);
+	/// What all threads spilled on the spheres of thread t, when all have swept.
+	void addSpills(const ThreadRuns& runs, int t, std::vector<Load>& loads) const;
 
 	/// Elastic energy of all contacts (J).
 	double energy(const std::vector<Place>& places) const;
@@ -45,14 +52,10 @@ public:
 
 private:
 	int find(int i, int j) const;
-	SweepSums sweepRun(int from, int to, int owned, const std::vector<Place>& places, const std::vector<Motion>& motions, Load* loads, Load* spill,
-	                   double dt);
-
 	NearPairs pairs;
-	int usedRows = 0; ///< rows up to the last one with a pair: the membrane's particles seldom have any
 	std::vector<ContactMemory> memories;
 	std::vector<unsigned char> bits;
-	std::vector<std::vector<Load>> spills; ///< one a thread
+	std::vector<std::vector<Load>> spills; ///< one a thread, from the end of its rows upwards
 };
 
 } // namespace hexmembrane

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numeric>
 
+#include <omp.h>
+
 namespace hexmembrane {
 
 void FlatAssembly::setSkin(double skin)
@@ -133,20 +135,30 @@ void FlatAssembly::findPairs(NearPairs& general, std::vector<NormalList::Pair>& 
 	if (grainCount > 0) {
 		CellGrid grid(low, high, largest + std::max(largest, largestParticle) + gap);
 		grid.fill(centres);
-		std::vector<int> near;
-		for (int m = grainCount; m < all; ++m) {
-			near.clear();
-			grid.forEachNear(listed[m], [&](int i) {
-				const double reach = radii[i] + places[m].radius + gap;
-				if ((listed[m] - centres[i]).squaredNorm() < reach * reach) near.push_back(i);
-			});
-			std::sort(near.begin(), near.end());
-			for (int i : near)
-				if (isSmooth(i, m))
-					frictionless.push_back({i, m});
-				else
-					extra.push_back({i, m});
+		// by parts, put together in their order
+		const int parts = omp_get_max_threads();
+		std::vector<std::vector<NormalList::Pair>> smoothParts(parts);
+		std::vector<std::vector<std::array<int, 2>>> extraParts(parts);
+#pragma omp parallel for schedule(static, 1)
+		for (int part = 0; part < parts; ++part) {
+			std::vector<int> near;
+			const auto border = [&](int k) { return grainCount + int((all - grainCount) * long(k) / parts); };
+			for (int m = border(part); m < border(part + 1); ++m) {
+				near.clear();
+				grid.forEachNear(listed[m], [&](int i) {
+					const double reach = radii[i] + places[m].radius + gap;
+					if ((listed[m] - centres[i]).squaredNorm() < reach * reach) near.push_back(i);
+				});
+				std::sort(near.begin(), near.end());
+				for (int i : near)
+					if (isSmooth(i, m))
+						smoothParts[part].push_back({i, m});
+					else
+						extraParts[part].push_back({i, m});
+			}
 		}
+		for (const auto& part : smoothParts) frictionless.insert(frictionless.end(), part.begin(), part.end());
+		for (const auto& part : extraParts) extra.insert(extra.end(), part.begin(), part.end());
 	}
 	if (bondedNeighbours) {
 		std::vector<Vec3> particles(listed.begin() + grainCount, listed.end());
@@ -183,6 +195,7 @@ void FlatAssembly::buildLists(const std::vector<int>& newIndex)
 	findPairs(general, frictionless);
 	contacts.rebuild(std::move(general), newIndex, [this](int i, int j) { return lawOf(i, j); });
 	smooth.rebuild(frictionless, grainCount, spheres() - grainCount, [this](int i, int j) { return lawOf(i, j).kn; });
+	runs = {};
 	boundaryContacts.resize(boundaries.size());
 	for (std::size_t b = 0; b < boundaries.size(); ++b) {
 		std::vector<int> near;
@@ -205,16 +218,55 @@ void FlatAssembly::makeLists()
 	++made;
 }
 
-void FlatAssembly::computeLoads(double dt, int threads)
+void FlatAssembly::divide(int threads)
+{
+	if (runs.threads() == threads) return;
+	runs.divide(threads, contacts.rowStart(), grainCount);
+	contacts.divide(runs);
+}
+
+void FlatAssembly::clearLoads(int from, int to)
 {
 	if (outside.empty())
-		loads.assign(places.size(), noLoad());
+		std::fill(loads.begin() + from, loads.begin() + to, noLoad());
 	else
-		loads = outside;
-	sums += contacts.sweep(places, motions, loads, dt, threads);
-	smooth.sweep(places, loads, onParticle, threads);
-	onBoundary.resize(boundaries.size());
-	for (std::size_t b = 0; b < boundaries.size(); ++b) onBoundary[b] = boundaryContacts[b].sweep(boundaries[b], places, motions, loads, dt, threads, sums);
+		std::copy(outside.begin() + from, outside.begin() + to, loads.begin() + from);
+}
+
+void FlatAssembly::computeLoads(double dt, int threads)
+{
+	divide(threads);
+	const std::size_t count = boundaries.size();
+	loads.resize(places.size());
+	onParticle.resize(spheres() - grainCount);
+	// one slot a thread, summed in their order
+	std::vector<SweepSums> parts(threads);
+	std::vector<BoundaryLoad> received(count * threads);
+#pragma omp parallel num_threads(threads) if (threads > 1)
+	{
+#pragma omp for schedule(static, 1)
+		for (int t = 0; t < threads; ++t) {
+			runs.forOwned(t, [&](int from, int to) { clearLoads(from, to); });
+			parts[t] = contacts.sweep(runs, t, places, motions, loads, dt);
+		}
+#pragma omp for schedule(static, 1)
+		for (int t = 0; t < threads; ++t) {
+			contacts.addSpills(runs, t, loads);
+			runs.forOwned(t, [&](int from, int to) {
+				smooth.sweep(from, to, places, loads);
+				for (std::size_t b = 0; b < count; ++b)
+					boundaryContacts[b].sweep(from, to, boundaries[b], places, motions, loads, dt, received[t * count + b]);
+			});
+		}
+#pragma omp for schedule(static, 1)
+		for (int t = 0; t < threads; ++t) runs.forOwned(t, [&](int from, int to) { smooth.gather(from, to, onParticle); });
+	}
+	onBoundary.assign(count, {});
+	for (int t = 0; t < threads; ++t) {
+		sums += parts[t];
+		for (std::size_t b = 0; b < count; ++b) onBoundary[b] += received[t * count + b];
+	}
+	for (const BoundaryLoad& boundary : onBoundary) sums += boundary.sums;
 }
 
 double FlatAssembly::elasticEnergy() const
@@ -243,19 +295,20 @@ inline double absoluteDot(const Vec3& a, const Vec3& b) { return a.cwiseAbs().do
 
 int FlatAssembly::moveGrains(double dt, double damping, bool energies, int threads)
 {
+	divide(threads);
 	const double limit = 0.25 * gap * gap / (dt * dt);
 	double fastest2 = 0;
 	int lost = grainCount;
 	std::vector<double> dampedPart(threads, 0), kineticPart(threads, 0); // summed in the order of the threads
 #pragma omp parallel for schedule(static, 1) num_threads(threads) if (threads > 1) reduction(max : fastest2) reduction(min : lost)
-	for (int t = 0; t < threads; ++t)
-		for (int i = grainCount * long(t) / threads; i < grainCount * long(t + 1) / threads; ++i) {
+	for (int t = 0; t < threads; ++t) {
+		double moving = 0, taken = 0;
+		for (int i = runs.rowsOf(t).from; i < std::min(runs.rowsOf(t).to, grainCount); ++i) {
 			Motion& motion = motions[i];
 			const Load& load = loads[i];
 			if (energies) {
-				kineticPart[t] += 0.5 * mass[i] * motion.velocity.squaredNorm() + 0.5 * inertia[i] * motion.spin.squaredNorm();
-				if (!fixed[i])
-					dampedPart[t] += damping * dt * (absoluteDot(motion.velocity, load.force) + absoluteDot(motion.spin, load.torque));
+				moving += 0.5 * mass[i] * motion.velocity.squaredNorm() + 0.5 * inertia[i] * motion.spin.squaredNorm();
+				if (!fixed[i]) taken += damping * dt * (absoluteDot(motion.velocity, load.force) + absoluteDot(motion.spin, load.torque));
 			}
 			if (!fixed[i]) {
 				motion.velocity += dt * damped(load.force / mass[i], motion.velocity, dt, damping);
@@ -268,6 +321,9 @@ int FlatAssembly::moveGrains(double dt, double damping, bool energies, int threa
 			if (!(speed2 < limit) || !std::isfinite(turn.sum())) lost = std::min(lost, i);
 			fastest2 = std::max(fastest2, speed2);
 		}
+		kineticPart[t] = moving;
+		dampedPart[t] = taken;
+	}
 	for (int t = 0; t < threads; ++t) dampedWork += dampedPart[t];
 	if (energies) {
 		kinetic = 0;

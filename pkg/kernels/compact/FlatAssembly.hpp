@@ -4,6 +4,7 @@
 #include "BoundaryContacts.hpp"
 #include "ContactList.hpp"
 #include "NormalList.hpp"
+#include "ThreadRuns.hpp"
 #include "kernels/ContactMaterial.hpp"
 
 #include <vector>
@@ -77,7 +78,7 @@ public:
 	// Results of computeLoads()
 	std::vector<Load> loads;      ///< on grains; on particles what contacts with memory do
 	std::vector<Vec3> onParticle; ///< what frictionless contacts do to the membrane's particles (N)
-	std::vector<Load> onBoundary;
+	std::vector<BoundaryLoad> onBoundary;
 	SweepSums sums;        ///< of all steps since it was last reset
 	double dampedWork = 0; ///< taken by the local damping since it was last reset (J)
 	double kinetic = 0;    ///< of the grains, by the velocities before the last step (J)
@@ -98,6 +99,9 @@ public:
 
 private:
 	void sortGrains(std::vector<int>& newIndex);
+	/// The division of the spheres among so many threads.
+	void divide(int threads);
+	void clearLoads(int from, int to);
 	void findPairs(NearPairs& general, std::vector<NormalList::Pair>& frictionless) const;
 	/// Whether a contact of these two has neither friction nor rolling resistance.
 	bool isSmooth(int i, int j) const
@@ -106,6 +110,7 @@ private:
 		return !(std::min(a.friction, b.friction) > 0) && !(std::min(a.rollingFriction, b.rollingFriction) > 0);
 	}
 
+	ThreadRuns runs; ///< of the present lists; none: to be made
 	int grainCount = 0;
 	double gap = 0, fastest = 0;
 	long made = 0;

@@ -1,6 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "NormalList.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hexmembrane {
@@ -35,37 +36,34 @@ void NormalList::renewStiffness(const std::function<double(int, int)>& stiffness
 		for (int p = start[i]; p < start[i + 1]; ++p) kn[p] = stiffness(int(i), other[p]);
 }
 
-void NormalList::sweep(const std::vector<Place>& places, std::vector<Load>& loads, std::vector<Vec3>& onParticle, int threads)
+void NormalList::sweep(int from, int to, const std::vector<Place>& places, std::vector<Load>& loads)
 {
-	const int grains = int(start.size()) - 1, particles = int(particleStart.size()) - 1;
-	onParticle.resize(std::max(particles, 0));
-#pragma omp parallel num_threads(threads) if (threads > 1)
-	{
-#pragma omp for schedule(static)
-		for (int i = 0; i < grains; ++i) {
-			if (start[i] == start[i + 1]) continue;
-			const Place a = places[i];
-			Vec3 sum = Vec3::Zero();
-			for (int p = start[i]; p < start[i + 1]; ++p) {
-				const Place& b = places[other[p]];
-				const Vec3 branch = b.centre - a.centre;
-				const double square = branch.squaredNorm(), reach = a.radius + b.radius;
-				if (square > reach * reach) {
-					force[p] = Vec3::Zero();
-					continue;
-				}
-				const double distance = std::sqrt(square);
-				force[p] = kn[p] * (reach - distance) / distance * branch;
-				sum += force[p];
+	for (int i = from; i < std::min(to, firstParticle); ++i) {
+		if (start[i] == start[i + 1]) continue;
+		const Place a = places[i];
+		Vec3 sum = Vec3::Zero();
+		for (int p = start[i]; p < start[i + 1]; ++p) {
+			const Place& b = places[other[p]];
+			const Vec3 branch = b.centre - a.centre;
+			const double square = branch.squaredNorm(), reach = a.radius + b.radius;
+			if (square > reach * reach) {
+				force[p] = Vec3::Zero();
+				continue;
 			}
-			loads[i].force -= sum;
+			const double distance = std::sqrt(square);
+			force[p] = kn[p] * (reach - distance) / distance * branch;
+			sum += force[p];
 		}
-#pragma omp for schedule(static)
-		for (int m = 0; m < particles; ++m) {
-			Vec3 sum = Vec3::Zero();
-			for (int q = particleStart[m]; q < particleStart[m + 1]; ++q) sum += force[place[q]];
-			onParticle[m] = sum;
-		}
+		loads[i].force -= sum;
+	}
+}
+
+void NormalList::gather(int from, int to, std::vector<Vec3>& onParticle) const
+{
+	for (int m = std::max(from, firstParticle) - firstParticle; m < to - firstParticle; ++m) {
+		Vec3 sum = Vec3::Zero();
+		for (int q = particleStart[m]; q < particleStart[m + 1]; ++q) sum += force[place[q]];
+		onParticle[m] = sum;
 	}
 }
 

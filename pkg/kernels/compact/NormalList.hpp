@@ -22,8 +22,10 @@ public:
 	void rebuild(const std::vector<Pair>& found, int grains, int particles, const std::function<double(int, int)>& stiffness);
 	void renewStiffness(const std::function<double(int, int)>& stiffness);
 
-	/// Adds what the particles do to the grains to `loads`, and writes what the grains do to the particles to `onParticle` (of all particles).
-	void sweep(const std::vector<Place>& places, std::vector<Load>& loads, std::vector<Vec3>& onParticle, int threads);
+	/// Adds what the particles do to the grains from .. to - 1 to `loads`.
+	void sweep(int from, int to, const std::vector<Place>& places, std::vector<Load>& loads);
+	/// Writes what the grains do to the particles from .. to - 1 (their indices among all spheres) to `onParticle`, when all grains are swept.
+	void gather(int from, int to, std::vector<Vec3>& onParticle) const;
 
 	double energy(const std::vector<Place>& places) const;
 	/// Calls visit(grain, particle, kn, overlap, normal) for every touching pair; normal from grain to particle.
