@@ -10,6 +10,25 @@ namespace yade {
 
 YADE_PLUGIN((CompactLoop));
 
+namespace {
+
+// The number of threads of every parallel loop below it, while it lives.
+class ThreadCount {
+public:
+	explicit ThreadCount(int wished) : before(omp_get_max_threads())
+	{
+		if (wished > 0) omp_set_num_threads(std::min(wished, before));
+	}
+	~ThreadCount() { omp_set_num_threads(before); }
+	ThreadCount(const ThreadCount&) = delete;
+	ThreadCount& operator=(const ThreadCount&) = delete;
+
+private:
+	const int before;
+};
+
+} // namespace
+
 void CompactLoop::prepareEngines()
 {
 	hexmembrane::requireNonNegative("CompactLoop.damping", damping, "1");
@@ -78,6 +97,7 @@ long CompactLoop::stepsToDo() const
 
 void CompactLoop::action()
 {
+	const ThreadCount count(ompThreads);
 	threads = omp_get_max_threads();
 	prepareEngines();
 	takeScene();

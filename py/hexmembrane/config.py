@@ -93,6 +93,9 @@ class Membrane:
 	)
 	poisson: float = key(1 / 3, "in-plane Poisson's ratio of the lattice; 1/3 has central forces only", "", low=0, high=0.33333334)
 	density: float = key(1000.0, "density of the membrane's spheres", "kg/m3", low=0, openLow=True)
+	densityScaling: Optional[float] = key(
+		1.0, "factor on the mass of the membrane's spheres, for a longer time step where they set it; none: as much as lets the grains set it", "", low=1
+	)
 	tensionOnly: bool = key(False, "bonds carry tension only: the sheet wrinkles instead of carrying compression")
 	oRings: str = key("platens", "O-ring rows ride with the platens or stay fixed in space", "", choices=("platens", "fixed"))
 	surface: str = key("inner", "surface on which the pressure acts, inner surface or sphere centres", "", choices=("inner", "centre"))

@@ -31,14 +31,15 @@ def platenRows(wished, particleRadius, smallest):
 	return max(2, math.ceil(2 * smallest / (math.sqrt(3) * particleRadius))) if smallest > 0 else 2
 
 
-def generate(config, particleRadius, smallest):
+def generate(config, particleRadius, smallest, scaling=1.0):
 	"""A membrane as configured, generated, with a material of its own.
 
 	:param particleRadius: wished radius of its spheres [m]. :param smallest: smallest grain's radius [m], nan: unknown.
+	:param scaling: factor on its density.
 	:raises ValueError: it is too coarse for the specimen or the grains, and such.
 	"""
 	given, grain = config.membrane, config.specimen
-	O.materials.append(yade.LinearMat(emod=grain.emod, kratio=grain.kratio, friction=0, density=given.density, label="membrane"))
+	O.materials.append(yade.LinearMat(emod=grain.emod, kratio=grain.kratio, friction=0, density=scaling * given.density, label="membrane"))
 	membrane = yade.HexMembrane(
 		specimenRadius=grain.radius,
 		specimenHeight=grain.height,
@@ -46,7 +47,7 @@ def generate(config, particleRadius, smallest):
 		placement=given.placement,
 		oRingRows=given.oRingRows,
 		platenRows=platenRows(given.platenRows, particleRadius, smallest),
-		density=given.density,
+		density=scaling * given.density,
 		material=O.materials["membrane"],
 		smallestGrain=smallest,
 		mask=1 | MASK,
@@ -73,8 +74,12 @@ class FlexibleMembrane:
 		"""The membrane as configured round the packing."""
 		given = config.membrane
 		smallest, largest = float(packing.radii.min()), float(packing.radii.max())
-		membrane = generate(config, given.particleRadius or given.sizeRatio * smallest, smallest)
+		particleRadius = given.particleRadius or given.sizeRatio * smallest
+		grains = timestep.grainStep(config.specimen, smallest)
+		scaling = timestep.densityScaling(given.densityScaling, grains, timestep.membraneStep(config.specimen, given, largest, particleRadius))
+		membrane = generate(config, particleRadius, smallest, scaling)
 		radius = membrane.sphereRadius
+		unscaled = timestep.membraneStep(config.specimen, given, largest, radius)
 		kn, ks = timestep.bondStiffness(given.young, given.thickness, given.poisson)
 
 		def engines(bottom, top):
@@ -90,8 +95,12 @@ class FlexibleMembrane:
 			platenRadius=packing.radius,
 			overhang=membrane.rings * membrane.ringSpacing - config.specimen.height,
 			smallest=radius,
-			critical=timestep.membraneStep(config.specimen, given, largest, radius),
-			log=[cls._description(given, membrane, smallest, kn, ks), *cls._warning(config, packing)],
+			critical=math.sqrt(scaling) * unscaled,
+			log=[
+				cls._description(given, membrane, smallest, kn, ks),
+				*cls._scaled(config, packing, membrane, scaling, unscaled),
+				*cls._warning(config, packing),
+			],
 		)
 
 	@staticmethod
@@ -102,6 +111,17 @@ class FlexibleMembrane:
 			f"R/r = {radius / smallest:.3g} with r = {1e3 * smallest:.4g} mm the smallest grain's radius; "
 			f"E t = {given.young * given.thickness:.4g} N/m, bonds kn = {kn:.4g}, ks = {ks:.4g} N/m"
 		)
+
+	@staticmethod
+	def _scaled(config, packing, membrane, scaling, unscaled):
+		if scaling == 1:
+			return []
+		mass = len(membrane.ids) * timestep.sphereMass(membrane.sphereRadius, scaling * config.membrane.density)
+		share = mass / timestep.sphereMass(packing.radii, config.specimen.density).sum()
+		return [
+			f"membrane's density times {scaling:.3g}: its critical step is {math.sqrt(scaling) * unscaled:.4g} s instead of {unscaled:.4g} s, its mass "
+			f"{100 * share:.2g} % of the grains' instead of {100 * share / scaling:.2g} %; what that does is the column membrane_unbalanced"
+		]
 
 	@staticmethod
 	def _warning(config, packing):
@@ -156,6 +176,14 @@ class FlexibleMembrane:
 
 	def brokenBonds(self):
 		return self.bonds.brokenCount
+
+	def unbalanced(self):
+		"""Mean resultant force on the particles of groups 2 and 3, their mass times acceleration, over the confining pressure on a particle's area."""
+		membrane, pressure = self.membrane, self.pressure
+		free = [i for i, group in zip(membrane.ids, membrane.groups) if group != 1]
+		force = numpy.array([tuple(O.forces.f(i)) for i in free])
+		particle = 2 * math.sqrt(3) * membrane.sphereRadius**2
+		return float(numpy.linalg.norm(force, axis=1).mean()) / (pressure * particle) if pressure > 0 else 0.0
 
 	def carried(self, bottom, top):
 		return correction.terms(self.membrane, self.bonds, self.pressing, bottom, top)

@@ -15,6 +15,7 @@ type name. Its instances are the handles that stages, records and frames use, wi
 ``pressedArea(bottom, top)``  area that the pressure acts on [m2]
 ``transmitted(group)``        pressure that arrives at the soil [Pa]; 0: all, 2: beside the platens, 3: main body
 ``brokenBonds()``             their number
+``unbalanced()``              resultant force on the membrane's particles over the pressure's, 0 without
 ``carried(bottom, top)``      what the boundary itself carries, columns of :mod:`hexmembrane.correction`
 ``outside(points)``           which points are outside, as booleans
 ``addStiffness(stiffness)``   add to (bodies,) stiffnesses [N/m] what contacts do not show

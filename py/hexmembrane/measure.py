@@ -106,6 +106,7 @@ def row(scene, grains, reference, stage, elapsed):
 		"porosity": 1 - grains.solid / volume,
 		"coordination": coordination(grains.ids[0], len(grains.ids)),
 		"unbalanced": utils.unbalancedForce(),
+		"membrane_unbalanced": lateral.unbalanced(),
 		"inertial_number": abs(inertial),
 		"platen_force_bottom": forces[0],
 		"platen_force_top": forces[1],

@@ -73,6 +73,12 @@ COLUMNS = (
 	Column("porosity", "-", "1 - (volume of the grains)/V; overlaps at contacts are not taken off"),
 	Column("coordination", "-", "2 (contacts among grains with a normal force)/(number of grains)"),
 	Column("unbalanced", "-", "YADE's unbalancedForce: mean force on moving bodies (membrane too) over mean contact force"),
+	Column(
+		"membrane_unbalanced",
+		"-",
+		"mean resultant force on the membrane's particles of groups 2 and 3, mass times acceleration, over sigma3 2 sqrt(3) R^2: "
+		"what its inertia adds, and density scaling with it; 0 with a rigid wall",
+	),
 	Column("inertial_number", "-", "I = (approach speed of the platens/h) d sqrt(rho/sigma3), d mean diameter of the grains"),
 	Column("platen_force_bottom", "N", "on the bottom platen along its outward normal; positive when the specimen pushes back"),
 	Column("platen_force_top", "N", "the same on the top platen"),

@@ -91,6 +91,9 @@ class RigidWall:
 	def brokenBonds(self):
 		return 0
 
+	def unbalanced(self):
+		return 0.0
+
 	def carried(self, _bottom, _top):
 		return dict(correction.NONE)
 

@@ -130,6 +130,7 @@ def _engines(config, inner, smallest):
 		return [yade.ForceResetter(), loop, yade.RunawayGuard(iterPeriod=1)]
 	return [
 		yade.ForceResetter(),
+		yade.MemoryOrder(),
 		yade.InsertionSortCollider(
 			[yade.Bo1_Sphere_Aabb(), yade.Bo1_Platen_Aabb(), yade.Bo1_CylinderWall_Aabb()],
 			verletDist=given.verlet * smallest,

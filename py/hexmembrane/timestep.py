@@ -51,10 +51,19 @@ def membraneStep(specimen, membrane, largest, particleRadius):
 	bonds of which a lattice mode sees at most 6 kn.
 
 	:param specimen, membrane: configuration's sections. :param largest: largest grain radius [m]. :param particleRadius: [m].
+	:returns: the step without ``membrane.densityScaling``, which multiplies it by its root.
 	"""
 	bond = sum(bondStiffness(membrane.young, membrane.thickness, membrane.poisson))
 	pressed = PRESSING * contactStiffness(specimen.emod, particleRadius, largest) + 6 * bond
 	return 2 / math.sqrt(pressed / sphereMass(particleRadius, membrane.density))
+
+
+def densityScaling(wished, grains, membrane):
+	"""Factor on the membrane's mass: as wished, or the least with which the membrane's critical step is no shorter than the grains'.
+
+	:param wished: configuration's ``membrane.densityScaling``. :param grains, membrane: critical steps [s].
+	"""
+	return max(1.0, (grains / membrane) ** 2) if wished is None else wished
 
 
 def bound(count, pairs, normals, kn, ks, mass, extra=None):
