@@ -52,8 +52,8 @@ def test_effectIsRecordedAndSmall(runs):
 		shear = numpy.array([stage == "shear" for stage in table["stage"]])
 		unbalanced = table["membrane_unbalanced"][shear]
 		assert (unbalanced > 0).all() and unbalanced.max() < 0.1
-		q[name] = table["q"][shear]
+		q[name] = table["q"][shear] - table["q"][shear][0]  # the tiny test ends its consolidation within 10 % of the pressure
 	assert len(q["plain"]) == len(q["scaled"])
 	# two runs of 200 grains with different time steps: their contacts come and go at different times
-	assert abs(q["plain"] - q["scaled"]).max() < 0.1 * q["plain"].max()
+	assert abs(q["plain"] - q["scaled"]).max() < 0.06 * q["plain"].max()
 	assert math.isfinite(q["scaled"][-1])
