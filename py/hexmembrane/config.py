@@ -159,8 +159,13 @@ class Consolidation:
 		None, "coefficient of friction between grains until the end of consolidation; none: specimen.friction; lower: denser", "", low=0, high=5
 	)
 	unbalanced: float = key(1e-3, "limit of the unbalanced force ratio, membrane counted", "", low=0, high=0.1, openLow=True)
-	tolerance: float = key(
-		0.05, "largest relative distance of transmitted pressure and axial stress from the pressure", "", low=0, high=0.5, openLow=True
+	tolerance: Optional[float] = key(
+		None,
+		"largest relative distance of transmitted pressure and axial stress from the pressure; none: 0.005, and 0.05 with membrane.pressureGain 0",
+		"",
+		low=0,
+		high=0.5,
+		openLow=True,
 	)
 	maxSteps: int = key(200000, "steps after which a test that has not come to rest stops with an error", "", low=100)
 	timeLimit: Optional[float] = key(

@@ -112,7 +112,7 @@ def sizes(rows):
 				O.bodies.append(body)
 		window = max(20, 400000 // len(O.bodies))
 		O.engines = [yade.ForceResetter(), yade.CompactLoop(damping=0.2, substeps=window)]
-		O.dt = 1e-7
+		O.dt = 1e-9  # an unconfined lattice must not fly apart while it is measured
 		before = resident()
 		O.step()
 		memory = (resident() - before) / len(O.bodies)
