@@ -110,13 +110,13 @@ def sizes(rows):
 				body = utils.sphere(tuple(place), 1e-3, material="grain")
 				body.state.vel = tuple(1e-3 * random.uniform(-1, 1, 3))
 				O.bodies.append(body)
-		window = max(20, 400000 // len(O.bodies))
+		window = max(100, 400000 // len(O.bodies))  # at least the default of CompactLoop.substeps
 		O.engines = [yade.ForceResetter(), yade.CompactLoop(damping=0.2, substeps=window)]
 		O.dt = 1e-9  # an unconfined lattice must not fly apart while it is measured
 		before = resident()
 		O.step()
 		memory = (resident() - before) / len(O.bodies)
-		value = measure(0, window, 5)
+		value = measure(0, window, 3)
 		perSphere = value * 1e6 / len(O.bodies)
 		rows.append(("soil alone, lattice", len(O.bodies), contacts(), value, "", perSphere))
 		print("%7d spheres, %.2f contacts a sphere: %.2f ms, %.0f ns a sphere and step; its own memory %.0f bytes a sphere" % (len(O.bodies), contacts() / len(O.bodies), value, perSphere, memory), flush=True)

@@ -65,8 +65,8 @@ buildPlugin() {
 		}
 		echo "$hostId $checkout" >"$stamp"
 	fi
-	# A unit of the plugin takes up to 3.2 GB to compile.
-	memoryGb=$(awk '/^MemTotal:/ { print int($2 / 3.2e6) }' /proc/meminfo)
+	# A unit of the plugin takes up to 5.2 GB to compile.
+	memoryGb=$(awk '/^MemTotal:/ { print int($2 / 5.2e6) }' /proc/meminfo)
 	jobs=$(processors)
 	((memoryGb >= jobs)) || jobs=$((memoryGb > 0 ? memoryGb : 1))
 	"${entry[@]}" ninja -C "$buildDir" -j "$jobs" "$@" | tellBuild || die "the build failed (see above)."

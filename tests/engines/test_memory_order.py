@@ -121,6 +121,7 @@ def test_periodGoesOnAfterLoad(O, tmp_path):
 	assert O.engines[1].nDone == done + 1
 
 
+@pytest.mark.filterwarnings("ignore:dynamic=False:DeprecationWarning")  # YADE's own module
 def test_shapesThatHoldBodiesStay(O):
 	"""A grid's connections hold their nodes: they are left alone, with all that touches them."""
 	import yade.gridpfacet as grid
