@@ -1,6 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "BoundaryContacts.hpp"
 
+#include "BoundarySweep.hpp"
+
 #include <algorithm>
 
 namespace hexmembrane {
@@ -41,21 +43,10 @@ void BoundaryContacts::rebuild(std::vector<int> near, const std::vector<int>& ne
 void BoundaryContacts::sweep(int from, int to, const FlatBoundary& boundary, const std::vector<Place>& places, const std::vector<Motion>& motions,
                              std::vector<Load>& loads, double dt, BoundaryLoad& received)
 {
-	const Motion own{boundary.velocity, boundary.spin};
 	const auto first = std::lower_bound(spheres.begin(), spheres.end(), from), last = std::lower_bound(first, spheres.end(), to);
-	for (long c = first - spheres.begin(); c < last - spheres.begin(); ++c) {
-		const int i = spheres[c];
-		const FlatBoundary::Touch touch = boundary.touch(places[i]);
-		if (touch.u < 0 && !bits[c]) continue;
-		const Vec3 arm1 = touch.point - boundary.solid.centre, arm2 = touch.point - places[i].centre;
-		Vec3 force;
-		if (!advanceMemory(memories[c], bits[c], touch.u, touch.normal, own, arm1, motions[i], arm2, dt, force, received.sums)) continue;
-		const Vec3& moment = memories[c].moment;
-		loads[i] += {force, arm2.cross(force) + moment};
-		received.load += {-force, -arm1.cross(force) - moment};
-		received.normalForce += memories[c].law.kn * touch.u;
-		received.normalStiffness += memories[c].law.kn;
-	}
+	sweepBoundary({boundary, spheres.data(), memories.data(), bits.data(), places.data(), motions.data(), loads.data(), int(first - spheres.begin()),
+	               int(last - spheres.begin()), dt},
+	              received);
 }
 
 double BoundaryContacts::stiffness(const Vec3& along) const

@@ -1,6 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "ContactList.hpp"
 
+#include "PairSweep.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -48,11 +50,15 @@ void ContactList::rebuild(NearPairs found, const std::vector<int>& newIndex, con
 
 	pairs = std::move(found);
 	memories.resize(pairs.other.size());
+	first.resize(pairs.other.size());
 	bits.assign(pairs.other.size(), 0);
 	const long rows = long(pairs.start.size()) - 1;
 #pragma omp parallel for schedule(static)
 	for (long i = 0; i < rows; ++i)
-		for (int p = pairs.start[i]; p < pairs.start[i + 1]; ++p) memories[p] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), law(int(i), pairs.other[p])};
+		for (int p = pairs.start[i]; p < pairs.start[i + 1]; ++p) {
+			first[p] = int(i);
+			memories[p] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), law(int(i), pairs.other[p])};
+		}
 	old.forEachTouching([&](int i, int j, const ContactMemory& memory, unsigned char bit) { restore(newIndex[i], newIndex[j], memory, bit); });
 }
 
@@ -70,36 +76,11 @@ void ContactList::divide(const ThreadRuns& runs)
 SweepSums ContactList::sweep(const ThreadRuns& runs, int t, const std::vector<Place>& places, const std::vector<Motion>& motions, std::vector<Load>& loads,
                              double dt)
 {
-	SweepSums sums;
 	const auto [from, to] = runs.rowsOf(t);
 	std::vector<Load>& spill = spills[t];
 	std::fill(spill.begin(), spill.end(), noLoad());
-	for (int i = from; i < to; ++i) {
-		const Place a = places[i];
-		const Motion& motion = motions[i];
-		Load own = noLoad();
-		for (int p = pairs.start[i]; p < pairs.start[i + 1]; ++p) {
-			const int j = pairs.other[p];
-			const Place& b = places[j];
-			const Vec3 branch = b.centre - a.centre;
-			const double square = branch.squaredNorm(), reach = a.radius + b.radius;
-			if (square > reach * reach && !bits[p]) continue;
-
-			const double distance = std::sqrt(square), u = reach - distance;
-			const Vec3 normal = branch / distance;
-			const double arm1 = a.radius - 0.5 * u, arm2 = b.radius - 0.5 * u;
-			Vec3 force;
-			if (!advanceMemory(memories[p], bits[p], u, normal, motion, arm1 * normal, motions[j], -arm2 * normal, dt, force, sums)) continue;
-			const Vec3 turning = normal.cross(memories[p].shear);
-			own.force -= force;
-			own.torque -= arm1 * turning + memories[p].moment;
-			Load& other = j < to ? loads[j] : spill[j - to];
-			other.force += force;
-			other.torque += memories[p].moment - arm2 * turning;
-		}
-		loads[i] += own;
-	}
-	return sums;
+	return sweepPairs({first.data(), pairs.other.data(), memories.data(), bits.data(), places.data(), motions.data(), loads.data(), spill.data(), to,
+	                   pairs.start[from], pairs.start[to], dt});
 }
 
 void ContactList::addSpills(const ThreadRuns& runs, int t, std::vector<Load>& loads) const

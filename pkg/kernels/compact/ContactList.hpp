@@ -53,6 +53,7 @@ public:
 private:
 	int find(int i, int j) const;
 	NearPairs pairs;
+	std::vector<int> first; ///< first sphere of each pair
 	std::vector<ContactMemory> memories;
 	std::vector<unsigned char> bits;
 	std::vector<std::vector<Load>> spills; ///< one a thread, from the end of its rows upwards

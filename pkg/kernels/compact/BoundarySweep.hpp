@@ -1,0 +1,24 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "BoundaryContacts.hpp"
+
+namespace hexmembrane {
+
+/// The arrays of a sweep over the spheres near a boundary, see BoundaryContacts::sweep.
+struct BoundarySweep {
+	const FlatBoundary& boundary;
+	const int* spheres;
+	ContactMemory* memories;
+	unsigned char* bits;
+	const Place* places;
+	const Motion* motions;
+	Load* loads;
+	int begin, end; ///< contacts
+	double dt;
+};
+
+/// One step of the contacts begin .. end - 1, four at a time as in PairSweep.hpp; what the boundary receives is added to `received`.
+void sweepBoundary(const BoundarySweep& sweep, BoundaryLoad& received);
+
+} // namespace hexmembrane

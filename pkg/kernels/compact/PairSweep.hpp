@@ -1,0 +1,26 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "Flat.hpp"
+
+namespace hexmembrane {
+
+/// The arrays of a sweep over pairs of spheres, see ContactList::sweep.
+struct PairSweep {
+	const int *first, *second; ///< spheres of each pair
+	ContactMemory* memories;
+	unsigned char* bits;
+	const Place* places;
+	const Motion* motions;
+	Load* loads;
+	Load* spill; ///< for spheres `to` and above
+	int to;
+	int begin, end; ///< pairs
+	double dt;
+};
+
+/// One step of the pairs begin .. end - 1. Those that touch are picked out first, without branches that the processor would have to guess, and then
+/// taken four at a time; a few at the end of a run, and bonds, one at a time.
+SweepSums sweepPairs(const PairSweep& sweep);
+
+} // namespace hexmembrane
