@@ -122,7 +122,10 @@ void CompactLoop::action()
 
 void CompactLoop::step(bool last)
 {
-	if (!flat.listsHold()) flat.makeLists();
+	if (!flat.listsHold()) {
+		if (bonds) rows.giveVelocities(flat.motions.data() + flat.grains());
+		flat.makeLists();
+	}
 	flat.computeLoads(scene->dt, threads);
 	if (bonds) membraneForces();
 	const bool energies = scene->trackEnergy;
@@ -208,8 +211,9 @@ void CompactLoop::moveAll()
 		if (oRings) std::tie(rows.below, rows.above) = oRings->velocities();
 		hexmembrane::BondForce& kernel = bonds->bondKernel();
 		const int grains = flat.grains();
-		int lost = rows.move(dt, damping, 0.5 * flat.skin(), kernel.force, terms, flat.onParticle, flat.loads.data() + grains, kernel.position,
-		                     flat.places.data() + grains, flat.motions.data() + grains, energies, threads);
+		const hexmembrane::MembraneRows::Contacts contacts{flat.onParticle, flat.loads.data() + grains,  flat.loadedParticles(),
+		                                                   grains,          flat.places.data() + grains, flat.motions.data() + grains};
+		int lost = rows.move(dt, damping, 0.5 * flat.skin(), kernel.force, terms, contacts, kernel.position, energies, threads);
 		if (rotatingMembrane()) {
 			for (int k = 0; k < collectedMembrane->rings; ++k)
 				for (int a = 0; a < 3; ++a)
@@ -271,8 +275,9 @@ void CompactLoop::bookEnergies(Real elastic)
 	if (oRings) oRings->bookEnergy();
 }
 
-void CompactLoop::stopLost(Body::id_t id) const
+void CompactLoop::stopLost(Body::id_t id)
 {
+	if (bonds) rows.giveVelocities(flat.motions.data() + flat.grains());
 	const auto at = std::find(flat.id.begin(), flat.id.end(), id);
 	const auto& motion = flat.motions[at - flat.id.begin()];
 	const auto& place = flat.places[at - flat.id.begin()];

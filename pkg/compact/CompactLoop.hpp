@@ -35,7 +35,7 @@ private:
 	void moveAll();
 	void bookWorks();
 	void bookEnergies(Real elastic);
-	[[noreturn]] void stopLost(Body::id_t id) const;
+	[[noreturn]] void stopLost(Body::id_t id);
 	Real transmittedByGroup(int group) const;
 
 	// CompactScene.cpp: between YADE's bodies and the arrays

@@ -259,6 +259,7 @@ void CompactLoop::giveScene()
 	const int count = flat.spheres(), grains = flat.grains();
 	const bool rotating = collectedMembrane && rotatingMembrane();
 	const auto& bodies = *scene->bodies;
+	if (collectedMembrane) rows.giveVelocities(flat.motions.data() + grains);
 	for (int i = 0; i < count; ++i) {
 		prefetchAhead(bodies, flat.id, i);
 		const Body* b = livingBody(bodies, flat.id[i]);

@@ -83,6 +83,12 @@ public:
 		for (std::size_t c = 0; c < spheres.size(); ++c)
 			if (bits[c]) visit(spheres[c], memories[c], bits[c]);
 	}
+	/// Calls visit(sphere) for every listed one.
+	template <typename Visit>
+	void forEachNear(Visit&& visit) const
+	{
+		for (int i : spheres) visit(i);
+	}
 	bool restore(int sphere, const ContactMemory& memory, unsigned char bit);
 	int size() const { return int(spheres.size()); }
 

@@ -45,6 +45,12 @@ public:
 			for (int p = pairs.start[i]; p < pairs.start[i + 1]; ++p)
 				if (bits[p]) visit(int(i), pairs.other[p], memories[p], bits[p]);
 	}
+	/// Calls visit(i, j) for every listed pair.
+	template <typename Visit>
+	void forEachPair(Visit&& visit) const
+	{
+		for (std::size_t p = 0; p < first.size(); ++p) visit(first[p], pairs.other[p]);
+	}
 	/// Puts a memory (with its law) into the list. \return false when the pair is not in it
 	bool restore(int i, int j, const ContactMemory& memory, unsigned char bit);
 

@@ -1,6 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "FlatAssembly.hpp"
 
+#include "GrainMotion.hpp"
 #include "kernels/Check.hpp"
 
 #include <algorithm>
@@ -196,6 +197,7 @@ void FlatAssembly::buildLists(const std::vector<int>& newIndex)
 	contacts.rebuild(std::move(general), newIndex, [this](int i, int j) { return lawOf(i, j); });
 	smooth.rebuild(frictionless, grainCount, spheres() - grainCount, [this](int i, int j) { return lawOf(i, j).kn; });
 	runs = {};
+	loadsStale = true;
 	boundaryContacts.resize(boundaries.size());
 	for (std::size_t b = 0; b < boundaries.size(); ++b) {
 		std::vector<int> near;
@@ -225,12 +227,29 @@ void FlatAssembly::divide(int threads)
 	contacts.divide(runs);
 }
 
-void FlatAssembly::clearLoads(int from, int to)
+void FlatAssembly::listLoaded()
 {
-	if (outside.empty())
-		std::fill(loads.begin() + from, loads.begin() + to, noLoad());
-	else
+	loaded.clear();
+	if (!outside.empty()) {
+		for (int m = grainCount; m < spheres(); ++m) loaded.push_back(m);
+		return;
+	}
+	std::vector<char> is(spheres(), 0);
+	contacts.forEachPair([&](int i, int j) { is[i] = is[j] = 1; });
+	for (const BoundaryContacts& boundary : boundaryContacts) boundary.forEachNear([&](int i) { is[i] = 1; });
+	for (int m = grainCount; m < spheres(); ++m)
+		if (is[m]) loaded.push_back(m);
+}
+
+void FlatAssembly::clearLoads(int from, int to, bool all)
+{
+	if (!outside.empty()) {
 		std::copy(outside.begin() + from, outside.begin() + to, loads.begin() + from);
+		return;
+	}
+	const int upto = all ? to : std::max(from, std::min(to, grainCount));
+	std::fill(loads.begin() + from, loads.begin() + upto, noLoad());
+	for (auto m = std::lower_bound(loaded.begin(), loaded.end(), upto); m != loaded.end() && *m < to; ++m) loads[*m] = noLoad();
 }
 
 void FlatAssembly::computeLoads(double dt, int threads)
@@ -239,6 +258,9 @@ void FlatAssembly::computeLoads(double dt, int threads)
 	const std::size_t count = boundaries.size();
 	loads.resize(places.size());
 	onParticle.resize(spheres() - grainCount);
+	const bool held = !outside.empty(), all = loadsStale || held;
+	if (all) listLoaded();
+	loadsStale = held;
 	// one slot a thread, summed in their order
 	std::vector<SweepSums> parts(threads);
 	std::vector<BoundaryLoad> received(count * threads);
@@ -246,7 +268,7 @@ void FlatAssembly::computeLoads(double dt, int threads)
 	{
 #pragma omp for schedule(static, 1)
 		for (int t = 0; t < threads; ++t) {
-			runs.forOwned(t, [&](int from, int to) { clearLoads(from, to); });
+			runs.forOwned(t, [&](int from, int to) { clearLoads(from, to, all); });
 			parts[t] = contacts.sweep(runs, t, places, motions, loads, dt);
 		}
 #pragma omp for schedule(static, 1)
@@ -276,61 +298,40 @@ double FlatAssembly::elasticEnergy() const
 	return sum;
 }
 
-namespace {
-
-/// YADE's second-order form of Cundall's damping: judged by the velocity in the middle of the step to come.
-inline Vec3 damped(const Vec3& a, const Vec3& v, double dt, double share)
-{
-	Vec3 out;
-	for (int axis = 0; axis < 3; ++axis) {
-		const double power = a[axis] * (v[axis] + 0.5 * dt * a[axis]);
-		out[axis] = a[axis] * (1 - share * ((power > 0) - (power < 0)));
-	}
-	return out;
-}
-
-inline double absoluteDot(const Vec3& a, const Vec3& b) { return a.cwiseAbs().dot(b.cwiseAbs()); }
-
-} // namespace
-
 int FlatAssembly::moveGrains(double dt, double damping, bool energies, int threads)
 {
 	divide(threads);
-	const double limit = 0.25 * gap * gap / (dt * dt);
-	double fastest2 = 0;
-	int lost = grainCount;
-	std::vector<double> dampedPart(threads, 0), kineticPart(threads, 0); // summed in the order of the threads
-#pragma omp parallel for schedule(static, 1) num_threads(threads) if (threads > 1) reduction(max : fastest2) reduction(min : lost)
+	std::vector<GrainMotion> parts(threads); // summed in the order of the threads
+#pragma omp parallel for schedule(static, 1) num_threads(threads) if (threads > 1)
 	for (int t = 0; t < threads; ++t) {
-		double moving = 0, taken = 0;
-		for (int i = runs.rowsOf(t).from; i < std::min(runs.rowsOf(t).to, grainCount); ++i) {
-			Motion& motion = motions[i];
-			const Load& load = loads[i];
-			if (energies) {
-				moving += 0.5 * mass[i] * motion.velocity.squaredNorm() + 0.5 * inertia[i] * motion.spin.squaredNorm();
-				if (!fixed[i]) taken += damping * dt * (absoluteDot(motion.velocity, load.force) + absoluteDot(motion.spin, load.torque));
-			}
-			if (!fixed[i]) {
-				motion.velocity += dt * damped(load.force / mass[i], motion.velocity, dt, damping);
-				motion.spin += dt * damped(load.torque / inertia[i], motion.spin, dt, damping);
-			}
-			const Vec3 turn = dt * motion.spin;
-			places[i].centre += dt * motion.velocity;
-			turned[i] += turn;
-			const double speed2 = motion.velocity.squaredNorm();
-			if (!(speed2 < limit) || !std::isfinite(turn.sum())) lost = std::min(lost, i);
-			fastest2 = std::max(fastest2, speed2);
-		}
-		kineticPart[t] = moving;
-		dampedPart[t] = taken;
+		GrainMotion part{};
+		part.places = places.data();
+		part.motions = motions.data();
+		part.loads = loads.data();
+		part.mass = mass.data();
+		part.inertia = inertia.data();
+		part.fixed = fixed.data();
+		part.turned = turned.data();
+		part.from = runs.rowsOf(t).from;
+		part.to = std::max(part.from, std::min(runs.rowsOf(t).to, grainCount));
+		part.dt = dt;
+		part.damping = damping;
+		part.limit2 = 0.25 * gap * gap / (dt * dt);
+		part.energies = energies;
+		hexmembrane::moveGrains(part);
+		parts[t] = part;
 	}
-	for (int t = 0; t < threads; ++t) dampedWork += dampedPart[t];
-	if (energies) {
-		kinetic = 0;
-		for (int t = 0; t < threads; ++t) kinetic += kineticPart[t];
+	double fastest2 = 0;
+	if (energies) kinetic = 0;
+	int lost = -1;
+	for (const GrainMotion& part : parts) {
+		fastest2 = std::max(fastest2, part.fastest2);
+		dampedWork += part.dampedWork;
+		if (energies) kinetic += part.kinetic;
+		if (lost < 0 && part.lost < part.to) lost = id[part.lost];
 	}
 	noteSpeed(std::sqrt(fastest2), dt);
-	return lost < grainCount ? id[lost] : -1;
+	return lost;
 }
 
 } // namespace hexmembrane

@@ -49,6 +49,10 @@ public:
 	/// Steps at which lists were made so far.
 	long listsMade() const { return made; }
 
+	/// Particles that contacts with memory, boundaries or `outside` may load, ascending: all others have no load, nobody looks at their motion, and they
+	/// need neither be cleared nor kept up to date.
+	const std::vector<int>& loadedParticles() const { return loaded; }
+
 	/// Loads of one step: those of `outside` (empty: none) and of all contacts.
 	void computeLoads(double dt, int threads);
 	/// Leapfrog with local damping, as YADE's NewtonIntegrator: v += dt a, a reduced by the damping where it drives the motion and raised where it
@@ -76,7 +80,7 @@ public:
 	std::vector<FlatBoundary> boundaries;
 
 	// Results of computeLoads()
-	std::vector<Load> loads;      ///< on grains; on particles what contacts with memory do
+	std::vector<Load> loads;      ///< on grains; on particles what contacts with memory and `outside` do
 	std::vector<Vec3> onParticle; ///< what frictionless contacts do to the membrane's particles (N)
 	std::vector<BoundaryLoad> onBoundary;
 	SweepSums sums;        ///< of all steps since it was last reset
@@ -101,7 +105,8 @@ private:
 	void sortGrains(std::vector<int>& newIndex);
 	/// The division of the spheres among so many threads.
 	void divide(int threads);
-	void clearLoads(int from, int to);
+	void listLoaded();
+	void clearLoads(int from, int to, bool all);
 	void findPairs(NearPairs& general, std::vector<NormalList::Pair>& frictionless) const;
 	/// Whether a contact of these two has neither friction nor rolling resistance.
 	bool isSmooth(int i, int j) const
@@ -112,6 +117,8 @@ private:
 
 	ThreadRuns runs; ///< of the present lists; none: to be made
 	int grainCount = 0;
+	std::vector<int> loaded;
+	bool loadsStale = true; ///< particles that are not in `loaded` may have a load
 	double gap = 0, fastest = 0;
 	long made = 0;
 	std::vector<ContactMaterial> materials;

@@ -74,8 +74,14 @@ HEXMEMBRANE_WIDEST double fastestSquared(int n, const double* x, const double* y
 
 } // namespace
 
-int MembraneRows::move(double dt, double damping, double limit, const RingField& bonds, std::vector<Term>& terms, const std::vector<Vec3>& onParticle,
-                       const Load* loads, RingField& position, Place* places, Motion* motions, bool energies, int threads)
+void MembraneRows::giveVelocities(Motion* motions) const
+{
+	for (int k = 0; k < stencil.rings; ++k)
+		for (int i = 0; i < stencil.perRing; ++i) motions[stencil.at(k, i)].velocity = velocity.get(k, i);
+}
+
+int MembraneRows::move(double dt, double damping, double limit, const RingField& bonds, std::vector<Term>& terms, const Contacts& contacts, RingField& position,
+                       bool energies, int threads)
 {
 	const int n = stencil.perRing, rings = stencil.rings;
 	// one slot a ring, summed in their order: the same bits for any number of threads
@@ -84,9 +90,13 @@ int MembraneRows::move(double dt, double damping, double limit, const RingField&
 	std::vector<int> workOf(rings, -1);
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
 	for (int k = 0; k < rings; ++k) {
-		for (int i = 0; i < n; ++i) {
-			const int m = k * n + i;
-			total.set(k, i, onParticle[m] + loads[m].force);
+		for (int i = 0; i < n; ++i) total.set(k, i, contacts.onParticle[k * n + i]);
+		// those of this ring that more than smooth contacts act on
+		const auto from = std::lower_bound(contacts.loaded.begin(), contacts.loaded.end(), contacts.grains + k * n);
+		const auto to = std::lower_bound(from, contacts.loaded.end(), contacts.grains + (k + 1) * n);
+		for (auto sphere = from; sphere != to; ++sphere) {
+			const int m = *sphere - contacts.grains, i = m - k * n;
+			total.set(k, i, contacts.onParticle[m] + contacts.loads[m].force);
 		}
 		std::array<const double*, 3> worked{};
 		int& workedBy = workOf[k];
@@ -127,10 +137,9 @@ int MembraneRows::move(double dt, double damping, double limit, const RingField&
 			}
 		position.wrap(k);
 		square[k] = fastestSquared(n, velocity.row(0, k), velocity.row(1, k), velocity.row(2, k));
-		for (int i = 0; i < n; ++i) {
-			places[k * n + i].centre = position.get(k, i);
-			motions[k * n + i].velocity = velocity.get(k, i);
-		}
+		for (int i = 0; i < n; ++i) contacts.places[k * n + i].centre = position.get(k, i);
+		for (auto sphere = from; sphere != to; ++sphere)
+			contacts.motions[*sphere - contacts.grains].velocity = velocity.get(k, *sphere - contacts.grains - k * n);
 	}
 	double fastest2 = 0;
 	kinetic = oRingBefore = oRingAfter = 0;

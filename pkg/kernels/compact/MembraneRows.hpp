@@ -25,11 +25,22 @@ public:
 	/// \param oRings rings at each end that move as told
 	MembraneRows(const HexStencil& stencil, int oRings);
 
-	/// One step. Adds bond forces, terms, contacts (`onParticle`, `loads` of the particles alone).
-	/// \param position moved, and wrapped again; `places` and `motions` of the particles written
+	/// What contacts do to the particles, and the particles' own places in the arrays of all spheres.
+	struct Contacts {
+		const std::vector<Vec3>& onParticle; ///< frictionless ones (N)
+		const Load* loads;                   ///< others, of the particles alone
+		const std::vector<int>& loaded;      ///< particles that may have such loads, ascending, by their index among all spheres
+		int grains;                          ///< spheres before the first particle
+		Place* places;                       ///< of the particles alone
+		Motion* motions;
+	};
+	/// One step. Adds bond forces, terms and contacts.
+	/// \param position moved, and wrapped again; places of all particles are written, motions of the loaded ones
 	/// \return index of a particle that is lost (moved `limit` in this step or is not finite), -1: none
-	int move(double dt, double damping, double limit, const RingField& bonds, std::vector<Term>& terms, const std::vector<Vec3>& onParticle,
-	         const Load* loads, RingField& position, Place* places, Motion* motions, bool energies, int threads);
+	int move(double dt, double damping, double limit, const RingField& bonds, std::vector<Term>& terms, const Contacts& contacts, RingField& position,
+	         bool energies, int threads);
+	/// Velocities of all particles.
+	void giveVelocities(Motion* motions) const;
 
 	/// The same for particles that rotate: their spins and torques.
 	int moveSpins(double dt, double damping, double inertia, const RingField& bondTorque, const Load* loads, RingField& spin, Motion* motions,

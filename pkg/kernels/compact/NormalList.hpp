@@ -11,7 +11,7 @@ namespace hexmembrane {
 /// Frictionless contacts of grains with the membrane's particles: kn u along the line of centres, nothing remembered, nothing turned.
 ///
 /// The list stands by grains and, a second time as indices, by particles. Forces of the pairs are stored and then gathered by particle: the same to the
-/// last bit for any number of threads.
+/// last bit for any number of threads. A grain's pairs are taken four at a time, whether they touch or not; what is missing to four are pairs without stiffness.
 class NormalList {
 public:
 	struct Pair {
@@ -32,20 +32,28 @@ public:
 	template <typename Visit>
 	void forEachTouching(const std::vector<Place>& places, Visit&& visit) const
 	{
-		for (std::size_t i = 0; i + 1 < start.size(); ++i)
-			for (int p = start[i]; p < start[i + 1]; ++p) {
+		for (std::size_t i = 0; i < length.size(); ++i)
+			for (int p = start[i]; p < start[i] + length[i]; ++p) {
 				const Vec3 branch = places[other[p]].centre - places[i].centre;
 				const double distance = branch.norm(), u = places[i].radius + places[other[p]].radius - distance;
 				if (u >= 0) visit(int(i), other[p], kn[p], u, Vec3(branch / distance));
 			}
 	}
-	int size() const { return int(other.size()); }
+	/// Listed pairs.
+	int size() const { return int(place.size()); }
 
 private:
+	/// Force of a pair on its particle.
+	struct alignas(32) PairForce {
+		Vec3 force;
+		double unused;
+	};
+	void sweepRows(int from, int to, const Place* places, Load* loads);
+
 	int firstParticle = 0;
-	std::vector<int> start, other; ///< by grain
+	std::vector<int> start, length, other; ///< by grain, each row filled up to fours
 	std::vector<double> kn;
-	std::vector<Vec3> force;               ///< on the particle
+	std::vector<PairForce> forces;
 	std::vector<int> particleStart, place; ///< by particle: where its pairs stand
 };
 

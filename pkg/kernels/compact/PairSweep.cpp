@@ -57,7 +57,7 @@ HEXMEMBRANE_INLINE bool pick(const PairSweep& s, int p, int end, Touching& found
 		found.first[count] = i;
 		found.second[count] = j;
 		const double square = branch[0] * branch[0] + branch[1] * branch[1] + branch[2] * branch[2];
-		count += ((square <= branch[3] * branch[3]) & (bits[p] < contactBonded)) | (bits[p] == contactTouching);
+		count += (!(square > branch[3] * branch[3]) & (bits[p] < contactBonded)) | (bits[p] == contactTouching);
 		any |= bits[p];
 	}
 	found.count = count;
