@@ -173,7 +173,7 @@ Real CompactLoop::transmittedByGroup(int group) const
 		area += tube.perRing * hexmembrane::particleArea(tube, x, k, collectedMembrane->sphereRadius, hexmembrane::AreaRule::tributary);
 		for (int i = 0; i < tube.perRing; ++i) {
 			const int m = tube.at(k, i);
-			const Vector3r onParticle = flat.onParticle[m] + flat.loads[flat.grains() + m].force;
+			const Vector3r onParticle = flat.onParticle[m].force + flat.loads[flat.grains() + m].force;
 			force -= onParticle.dot(hexmembrane::towardAxis(x.get(k, i), centre));
 		}
 	}

@@ -63,7 +63,7 @@ std::map<int, Load> byId(const FlatAssembly& flat)
 	std::map<int, Load> loads;
 	for (int i = 0; i < flat.spheres(); ++i) {
 		loads[flat.id[i]] = flat.loads[i];
-		if (i >= flat.grains()) loads[flat.id[i]].force += flat.onParticle[i - flat.grains()];
+		if (i >= flat.grains()) loads[flat.id[i]].force += flat.onParticle[i - flat.grains()].force;
 	}
 	return loads;
 }

@@ -32,6 +32,12 @@ struct alignas(64) Load {
 	}
 };
 
+/// A force alone: half a cache line.
+struct alignas(32) Push {
+	Vec3 force;
+	double unused;
+};
+
 inline Load noLoad() { return {Vec3::Zero(), Vec3::Zero()}; }
 
 /// What a contact remembers, and its parameters: two cache lines.
@@ -42,7 +48,8 @@ struct alignas(64) ContactMemory {
 	ContactLaw law;
 };
 
-static_assert(sizeof(Place) == 32 && sizeof(Motion) == 64 && sizeof(Load) == 64 && sizeof(ContactMemory) == 128, "the layout that the loops are made for");
+static_assert(sizeof(Place) == 32 && sizeof(Push) == 32 && sizeof(Motion) == 64 && sizeof(Load) == 64 && sizeof(ContactMemory) == 128,
+              "the layout that the loops are made for");
 
 /// Bits of a contact.
 enum ContactBits : unsigned char { contactTouching = 1, contactBonded = 2 };

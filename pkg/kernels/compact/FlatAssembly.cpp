@@ -134,7 +134,7 @@ void FlatAssembly::findPairs(NearPairs& general, std::vector<NormalList::Pair>& 
 	for (int m = grainCount; m < all; ++m) largestParticle = std::max(largestParticle, places[m].radius);
 	std::vector<std::array<int, 2>> extra; // pairs with particles that need memory
 	if (grainCount > 0) {
-		CellGrid grid(low, high, largest + std::max(largest, largestParticle) + gap);
+		CellGrid grid(low, high, largest + largestParticle + gap);
 		grid.fill(centres);
 		// by parts, put together in their order
 		const int parts = omp_get_max_threads();

@@ -81,7 +81,7 @@ public:
 
 	// Results of computeLoads()
 	std::vector<Load> loads;      ///< on grains; on particles what contacts with memory and `outside` do
-	std::vector<Vec3> onParticle; ///< what frictionless contacts do to the membrane's particles (N)
+	std::vector<Push> onParticle; ///< what frictionless contacts do to the membrane's particles (N)
 	std::vector<BoundaryLoad> onBoundary;
 	SweepSums sums;        ///< of all steps since it was last reset
 	double dampedWork = 0; ///< taken by the local damping since it was last reset (J)

@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneRows.hpp"
 
-#include "kernels/Simd.hpp"
+#include "kernels/Lanes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -35,6 +35,44 @@ HEXMEMBRANE_WIDEST Powers moveRow(int n, double dt, double damping, double mass,
 		powerAfter += term[i] * after;
 	}
 	return {powerBefore, powerAfter};
+}
+
+/// Records of four numbers into three rows, and three rows into such records, whose fourth number stays.
+HEXMEMBRANE_WIDEST void toRows(int n, const double* records, double* x, double* y, double* z)
+{
+	int i = 0;
+	for (; i + 4 <= n; i += 4) {
+		const double* from = records + 4 * i;
+		Lanes a = load4(from), b = load4(from + 4), c = load4(from + 8), d = load4(from + 12);
+		transpose(a, b, c, d);
+		store4(x + i, a);
+		store4(y + i, b);
+		store4(z + i, c);
+	}
+	for (; i < n; ++i) {
+		x[i] = records[4 * i];
+		y[i] = records[4 * i + 1];
+		z[i] = records[4 * i + 2];
+	}
+}
+
+HEXMEMBRANE_WIDEST void fromRows(int n, const double* x, const double* y, const double* z, double* records)
+{
+	int i = 0;
+	for (; i + 4 <= n; i += 4) {
+		double* to = records + 4 * i;
+		Lanes a = load4(x + i), b = load4(y + i), c = load4(z + i), d{to[3], to[7], to[11], to[15]};
+		transpose(a, b, c, d);
+		store4(to, a);
+		store4(to + 4, b);
+		store4(to + 8, c);
+		store4(to + 12, d);
+	}
+	for (; i < n; ++i) {
+		records[4 * i] = x[i];
+		records[4 * i + 1] = y[i];
+		records[4 * i + 2] = z[i];
+	}
 }
 
 HEXMEMBRANE_WIDEST void addRow(int n, const double* __restrict a, double* __restrict sum)
@@ -90,13 +128,13 @@ int MembraneRows::move(double dt, double damping, double limit, const RingField&
 	std::vector<int> workOf(rings, -1);
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
 	for (int k = 0; k < rings; ++k) {
-		for (int i = 0; i < n; ++i) total.set(k, i, contacts.onParticle[k * n + i]);
+		toRows(n, contacts.onParticle[k * n].force.data(), total.row(0, k), total.row(1, k), total.row(2, k));
 		// those of this ring that more than smooth contacts act on
 		const auto from = std::lower_bound(contacts.loaded.begin(), contacts.loaded.end(), contacts.grains + k * n);
 		const auto to = std::lower_bound(from, contacts.loaded.end(), contacts.grains + (k + 1) * n);
 		for (auto sphere = from; sphere != to; ++sphere) {
 			const int m = *sphere - contacts.grains, i = m - k * n;
-			total.set(k, i, contacts.onParticle[m] + contacts.loads[m].force);
+			total.set(k, i, contacts.onParticle[m].force + contacts.loads[m].force);
 		}
 		std::array<const double*, 3> worked{};
 		int& workedBy = workOf[k];
@@ -137,7 +175,7 @@ int MembraneRows::move(double dt, double damping, double limit, const RingField&
 			}
 		position.wrap(k);
 		square[k] = fastestSquared(n, velocity.row(0, k), velocity.row(1, k), velocity.row(2, k));
-		for (int i = 0; i < n; ++i) contacts.places[k * n + i].centre = position.get(k, i);
+		fromRows(n, position.row(0, k), position.row(1, k), position.row(2, k), contacts.places[k * n].centre.data());
 		for (auto sphere = from; sphere != to; ++sphere)
 			contacts.motions[*sphere - contacts.grains].velocity = velocity.get(k, *sphere - contacts.grains - k * n);
 	}

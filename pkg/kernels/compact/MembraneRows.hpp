@@ -27,7 +27,7 @@ public:
 
 	/// What contacts do to the particles, and the particles' own places in the arrays of all spheres.
 	struct Contacts {
-		const std::vector<Vec3>& onParticle; ///< frictionless ones (N)
+		const std::vector<Push>& onParticle; ///< frictionless ones (N)
 		const Load* loads;                   ///< others, of the particles alone
 		const std::vector<int>& loaded;      ///< particles that may have such loads, ascending, by their index among all spheres
 		int grains;                          ///< spheres before the first particle

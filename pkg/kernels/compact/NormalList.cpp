@@ -79,13 +79,20 @@ void NormalList::sweep(int from, int to, const std::vector<Place>& places, std::
 	sweepRows(from, std::min(to, firstParticle), places.data(), loads.data());
 }
 
-void NormalList::gather(int from, int to, std::vector<Vec3>& onParticle) const
+HEXMEMBRANE_WIDEST void NormalList::gatherRows(int from, int to, Push* onParticle) const
 {
-	for (int m = std::max(from, firstParticle) - firstParticle; m < to - firstParticle; ++m) {
-		Vec3 sum = Vec3::Zero();
-		for (int q = particleStart[m]; q < particleStart[m + 1]; ++q) sum += forces[place[q]].force;
-		onParticle[m] = sum;
+	const int* const at = place.data();
+	const Push* const pushes = forces.data();
+	for (int m = from; m < to; ++m) {
+		Lanes sum = lanes(0);
+		for (int q = particleStart[m]; q < particleStart[m + 1]; ++q) sum += load4(pushes[at[q]].force.data());
+		store4(onParticle[m].force.data(), sum);
 	}
+}
+
+void NormalList::gather(int from, int to, std::vector<Push>& onParticle) const
+{
+	gatherRows(std::max(from, firstParticle) - firstParticle, to - firstParticle, onParticle.data());
 }
 
 double NormalList::energy(const std::vector<Place>& places) const
