@@ -84,6 +84,47 @@ void lists(benchmark::State& state)
 	perItem(state, "perSphere", flat.grains());
 }
 
+/// Whole steps of a face-centred lattice of range(0)^3 cells, four spheres each, that overlap a little and hardly move.
+void size(benchmark::State& state)
+{
+	const int n = int(state.range(0));
+	const double spacing = 1e-3 * std::sqrt(2) * 1.998, mass = 4. / 3 * M_PI * 1e-9 * 2650;
+	const Vec3 shifts[4] = {{0, 0, 0}, {0.5, 0.5, 0}, {0.5, 0, 0.5}, {0, 0.5, 0.5}};
+	Random random(1);
+	std::vector<FlatAssembly::Sphere> spheres;
+	for (const Vec3& shift : shifts)
+		for (int x = 0; x < n; ++x)
+			for (int y = 0; y < n; ++y)
+				for (int z = 0; z < n; ++z) {
+					const Vec3 velocity(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3));
+					spheres.push_back({int(spheres.size()),
+					                   {spacing * (Vec3(x, y, z) + shift), 1e-3},
+					                   {velocity, Vec3::Zero()},
+					                   mass,
+					                   0.4e-6 * mass,
+					                   0,
+					                   false});
+				}
+	FlatAssembly flat;
+	flat.setSpheres(spheres, int(spheres.size()));
+	flat.setSkin(3e-4);
+	ContactMaterial sand;
+	sand.emod = 6e7;
+	sand.kratio = 3;
+	sand.friction = 0.4;
+	sand.rollingFriction = 0.5;
+	flat.setMaterials({sand});
+	flat.makeLists();
+	for (auto _ : state) {
+		flat.computeLoads(1e-9, 1);
+		benchmark::DoNotOptimize(flat.moveGrains(1e-9, 0.2, false, 1));
+	}
+	state.counters["spheres"] = double(spheres.size());
+	state.counters["listed"] = flat.contacts.size();
+	perItem(state, "perSphere", double(spheres.size()));
+}
+
+BENCHMARK(size)->Arg(12)->Arg(20)->Arg(29)->Arg(42)->Arg(63);
 BENCHMARK(linear);
 BENCHMARK(rollingResistance);
 BENCHMARK(motion);

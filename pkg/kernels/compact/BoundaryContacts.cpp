@@ -11,32 +11,19 @@ bool BoundaryContacts::restore(int sphere, const ContactMemory& memory, unsigned
 {
 	const auto found = std::lower_bound(spheres.begin(), spheres.end(), sphere);
 	if (found == spheres.end() || *found != sphere) return false;
-	memories[found - spheres.begin()] = memory;
-	bits[found - spheres.begin()] = bit;
+	store.put(int(found - spheres.begin()), memory, bit);
 	return true;
 }
 
-void BoundaryContacts::renewLaws(const LawOfSphere& law)
-{
-	for (std::size_t c = 0; c < spheres.size(); ++c) {
-		const ContactLaw before = memories[c].law;
-		memories[c].law = law(spheres[c]);
-		memories[c].law.tensileStrength = before.tensileStrength;
-		memories[c].law.shearStrength = before.shearStrength;
-	}
-}
-
-void BoundaryContacts::rebuild(std::vector<int> near, const std::vector<int>& newIndex, const LawOfSphere& law)
+void BoundaryContacts::rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<Frictions>& frictions, const LawOfSphere& law)
 {
 	BoundaryContacts old;
 	old.spheres.swap(spheres);
-	old.memories.swap(memories);
-	old.bits.swap(bits);
+	std::swap(old.store, store);
 
 	spheres = std::move(near);
-	bits.assign(spheres.size(), 0);
-	memories.resize(spheres.size());
-	for (std::size_t c = 0; c < spheres.size(); ++c) memories[c] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), law(spheres[c])};
+	store.start(spheres.size(), frictions);
+	for (std::size_t c = 0; c < spheres.size(); ++c) store.setLaw(int(c), law(spheres[c]));
 	old.forEachTouching([&](int i, const ContactMemory& memory, unsigned char bit) { restore(newIndex[i], memory, bit); });
 }
 
@@ -44,9 +31,9 @@ void BoundaryContacts::sweep(int from, int to, const FlatBoundary& boundary, con
                              std::vector<Load>& loads, double dt, BoundaryLoad& received)
 {
 	const auto first = std::lower_bound(spheres.begin(), spheres.end(), from), last = std::lower_bound(first, spheres.end(), to);
-	sweepBoundary({boundary, spheres.data(), memories.data(), bits.data(), places.data(), motions.data(), loads.data(), int(first - spheres.begin()),
-	               int(last - spheres.begin()), dt},
-	              received);
+	sweepBoundary(
+	        {boundary, spheres.data(), &store, places.data(), motions.data(), loads.data(), int(first - spheres.begin()), int(last - spheres.begin()), dt},
+	        received);
 }
 
 double BoundaryContacts::stiffness(const Vec3& along) const

@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "Flat.hpp"
+#include "ContactStore.hpp"
 #include "kernels/CylinderContact.hpp"
 #include "kernels/PlatenContact.hpp"
 
@@ -63,11 +63,10 @@ struct alignas(64) BoundaryLoad {
 /// Contacts of one boundary with the spheres near it, by the full law. The boundary is body 1.
 class BoundaryContacts {
 public:
-	using LawOfSphere = std::function<ContactLaw(int)>;
+	using LawOfSphere = std::function<LawOfKind(int)>;
 
 	/// New list of spheres that are near; memories of the old one move over, see ContactList::rebuild.
-	void rebuild(std::vector<int> near, const std::vector<int>& newIndex, const LawOfSphere& law);
-	void renewLaws(const LawOfSphere& law);
+	void rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<Frictions>& frictions, const LawOfSphere& law);
 
 	/// One step of the spheres from .. to - 1: their loads are added, what the boundary receives is added to `received`.
 	void sweep(int from, int to, const FlatBoundary& boundary, const std::vector<Place>& places, const std::vector<Motion>& motions,
@@ -81,7 +80,7 @@ public:
 	void forEachTouching(Visit&& visit) const
 	{
 		for (std::size_t c = 0; c < spheres.size(); ++c)
-			if (bits[c]) visit(spheres[c], memories[c], bits[c]);
+			if (store.bits[c]) visit(spheres[c], store.get(int(c)), store.bits[c]);
 	}
 	/// Calls visit(sphere) for every listed one.
 	template <typename Visit>
@@ -94,8 +93,7 @@ public:
 
 private:
 	std::vector<int> spheres; ///< ascending
-	std::vector<ContactMemory> memories;
-	std::vector<unsigned char> bits;
+	ContactStore store;
 };
 
 } // namespace hexmembrane

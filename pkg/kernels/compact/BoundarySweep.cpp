@@ -32,7 +32,7 @@ inline void act(const BoundarySweep& s, int c, const Vec3& arm1, const Vec3& arm
 	s.loads[s.spheres[c]] += {force, arm2.cross(force) + moment};
 	received.load += {-force, -arm1.cross(force) - moment};
 	received.normalForce += normalForce;
-	received.normalStiffness += s.memories[c].law.kn;
+	received.normalStiffness += s.store->contacts[c].kn;
 }
 
 /// One contact, by the law's own formulas.
@@ -42,9 +42,11 @@ void sweepOne(const BoundarySweep& s, int c, BoundaryLoad& received)
 	const FlatBoundary::Touch touch = s.boundary.touch(s.places[i]);
 	const Vec3 arm1 = touch.point - s.boundary.solid.centre, arm2 = touch.point - s.places[i].centre;
 	Vec3 force;
-	ContactMemory& memory = s.memories[c];
-	if (advanceMemory(memory, s.bits[c], touch.u, touch.normal, motionOf(s.boundary), arm1, s.motions[i], arm2, s.dt, force, received.sums))
-		act(s, c, arm1, arm2, force, memory.moment, memory.law.kn * touch.u, received);
+	ContactMemory memory = s.store->get(c);
+	unsigned char bits = s.store->bits[c];
+	const bool closed = advanceMemory(memory, bits, touch.u, touch.normal, motionOf(s.boundary), arm1, s.motions[i], arm2, s.dt, force, received.sums);
+	s.store->put(c, memory, bits);
+	if (closed) act(s, c, arm1, arm2, force, memory.moment, memory.law.kn * touch.u, received);
 }
 
 /// Adds those of the contacts c .. end - 1 that touch, or did, without a bond.
@@ -52,13 +54,13 @@ HEXMEMBRANE_INLINE void pick(const BoundarySweep& s, int c, int end, Touching& f
 {
 	const Motion own = motionOf(s.boundary);
 	for (; c < end; ++c) {
-		if (s.bits[c] & contactBonded) {
+		if (s.store->bits[c] & contactBonded) {
 			sweepOne(s, c, received);
 			continue;
 		}
 		const int i = s.spheres[c];
 		const FlatBoundary::Touch touch = s.boundary.touch(s.places[i]);
-		if (touch.u < 0 && !s.bits[c]) continue;
+		if (touch.u < 0 && !s.store->bits[c]) continue;
 		const int n = found.count++;
 		const Motion& motion = s.motions[i];
 		const Vec3 arm1 = touch.point - s.boundary.solid.centre, arm2 = touch.point - s.places[i].centre;
@@ -88,7 +90,7 @@ HEXMEMBRANE_INLINE void actFour(const BoundarySweep& s, const Touching& found, i
 {
 	const Lanes3 force = four.normalForce * four.normal + four.shear;
 	for (int k = 0; k < 4; ++k) {
-		if (!s.bits[found.contact[at + k]]) continue; // has opened
+		if (!s.store->bits[found.contact[at + k]]) continue; // has opened
 		act(s, found.contact[at + k], found.arm1[at + k], found.arm2[at + k], {force.x[k], force.y[k], force.z[k]},
 		    {four.moment.x[k], four.moment.y[k], four.moment.z[k]}, four.normalForce[k], received);
 	}
@@ -108,7 +110,7 @@ HEXMEMBRANE_WIDEST void sweepWidest(const BoundarySweep& s, FourSums& sumsOfFour
 			four.path = contactPath(four.normal, columns(found.velocity + 4 * f, unused), columns(found.spinSum + 4 * f, unused),
 			                        columns(found.spinDifference + 4 * f, unused), s.dt);
 		}
-		for (int f = 0; f < fours; ++f) advance(s.memories, s.bits, found.contact + 4 * f, found.fours[f], sumsOfFours);
+		for (int f = 0; f < fours; ++f) advance(*s.store, found.contact + 4 * f, found.fours[f], sumsOfFours);
 		for (int f = 0; f < fours; ++f) actFour(s, found, 4 * f, found.fours[f], received);
 		for (int n = 4 * fours; n < found.count; ++n) sweepOne(s, found.contact[n], received);
 	}

@@ -9,8 +9,7 @@ namespace hexmembrane {
 struct BoundarySweep {
 	const FlatBoundary& boundary;
 	const int* spheres;
-	ContactMemory* memories;
-	unsigned char* bits;
+	ContactStore* store;
 	const Place* places;
 	const Motion* motions;
 	Load* loads;

@@ -20,44 +20,31 @@ bool ContactList::restore(int i, int j, const ContactMemory& memory, unsigned ch
 	const bool swapped = i > j;
 	const int p = swapped ? find(j, i) : find(i, j);
 	if (p < 0) return false;
-	memories[p] = memory;
-	bits[p] = bit;
+	ContactMemory turned = memory;
 	if (swapped) { // what the second body feels is now what the first one felt
-		memories[p].shear = -memory.shear;
-		memories[p].moment = -memory.moment;
-		memories[p].normal = -memory.normal;
+		turned.shear = -memory.shear;
+		turned.moment = -memory.moment;
+		turned.normal = -memory.normal;
 	}
+	store.put(p, turned, bit);
 	return true;
 }
 
-void ContactList::renewLaws(const LawOfPair& law)
-{
-	for (std::size_t i = 0; i + 1 < pairs.start.size(); ++i)
-		for (int p = pairs.start[i]; p < pairs.start[i + 1]; ++p) {
-			const ContactLaw before = memories[p].law;
-			memories[p].law = law(int(i), pairs.other[p]);
-			memories[p].law.tensileStrength = before.tensileStrength;
-			memories[p].law.shearStrength = before.shearStrength;
-		}
-}
-
-void ContactList::rebuild(NearPairs found, const std::vector<int>& newIndex, const LawOfPair& law)
+void ContactList::rebuild(NearPairs found, const std::vector<int>& newIndex, const std::vector<Frictions>& frictions, const LawOfPair& law)
 {
 	ContactList old;
 	std::swap(old.pairs, pairs);
-	old.memories.swap(memories);
-	old.bits.swap(bits);
+	std::swap(old.store, store);
 
 	pairs = std::move(found);
-	memories.resize(pairs.other.size());
 	first.resize(pairs.other.size());
-	bits.assign(pairs.other.size(), 0);
+	store.start(pairs.other.size(), frictions);
 	const long rows = long(pairs.start.size()) - 1;
 #pragma omp parallel for schedule(static)
 	for (long i = 0; i < rows; ++i)
 		for (int p = pairs.start[i]; p < pairs.start[i + 1]; ++p) {
 			first[p] = int(i);
-			memories[p] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), law(int(i), pairs.other[p])};
+			store.setLaw(p, law(int(i), pairs.other[p]));
 		}
 	old.forEachTouching([&](int i, int j, const ContactMemory& memory, unsigned char bit) { restore(newIndex[i], newIndex[j], memory, bit); });
 }
@@ -79,8 +66,8 @@ SweepSums ContactList::sweep(const ThreadRuns& runs, int t, const std::vector<Pl
 	const auto [from, to] = runs.rowsOf(t);
 	std::vector<Load>& spill = spills[t];
 	std::fill(spill.begin(), spill.end(), noLoad());
-	return sweepPairs({first.data(), pairs.other.data(), memories.data(), bits.data(), places.data(), motions.data(), loads.data(), spill.data(), to,
-	                   pairs.start[from], pairs.start[to], dt});
+	return sweepPairs({first.data(), pairs.other.data(), &store, places.data(), motions.data(), loads.data(), spill.data(), to, pairs.start[from],
+	                   pairs.start[to], dt});
 }
 
 void ContactList::addSpills(const ThreadRuns& runs, int t, std::vector<Load>& loads) const

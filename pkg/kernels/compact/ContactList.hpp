@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "Flat.hpp"
+#include "ContactStore.hpp"
 #include "ThreadRuns.hpp"
 #include "kernels/CellGrid.hpp"
 
@@ -16,14 +16,12 @@ namespace hexmembrane {
 /// owner adds the spills in the order of the threads: the same bits for the same number of threads.
 class ContactList {
 public:
-	using LawOfPair = std::function<ContactLaw(int, int)>;
+	using LawOfPair = std::function<LawOfKind(int, int)>;
 
 	/// Takes over a new list. Memories of contacts that touch in the old list go to their pairs in the new one (the others are dropped: a touching pair is
 	/// always in a new list); `law` makes the parameters of all others.
-	/// \param newIndex where each sphere of the old numbering stands in the new one
-	void rebuild(NearPairs found, const std::vector<int>& newIndex, const LawOfPair& law);
-	/// Parameters anew for all pairs (a material has changed); memories and bonds stay.
-	void renewLaws(const LawOfPair& law);
+	/// \param frictions by kind \param newIndex where each sphere of the old numbering stands in the new one
+	void rebuild(NearPairs found, const std::vector<int>& newIndex, const std::vector<Frictions>& frictions, const LawOfPair& law);
 
 	/// Where the pairs of each sphere begin, one more entry than spheres.
 	const std::vector<int>& rowStart() const { return pairs.start; }
@@ -43,7 +41,7 @@ public:
 	{
 		for (std::size_t i = 0; i + 1 < pairs.start.size(); ++i)
 			for (int p = pairs.start[i]; p < pairs.start[i + 1]; ++p)
-				if (bits[p]) visit(int(i), pairs.other[p], memories[p], bits[p]);
+				if (store.bits[p]) visit(int(i), pairs.other[p], store.get(p), store.bits[p]);
 	}
 	/// Calls visit(i, j) for every listed pair.
 	template <typename Visit>
@@ -51,7 +49,7 @@ public:
 	{
 		for (std::size_t p = 0; p < first.size(); ++p) visit(first[p], pairs.other[p]);
 	}
-	/// Puts a memory (with its law) into the list. \return false when the pair is not in it
+	/// Puts a memory into the list; its law's parameters but the strengths are those that the list has. \return false when the pair is not in it
 	bool restore(int i, int j, const ContactMemory& memory, unsigned char bit);
 
 	int size() const { return int(pairs.other.size()); }
@@ -60,8 +58,7 @@ private:
 	int find(int i, int j) const;
 	NearPairs pairs;
 	std::vector<int> first; ///< first sphere of each pair
-	std::vector<ContactMemory> memories;
-	std::vector<unsigned char> bits;
+	ContactStore store;
 	std::vector<std::vector<Load>> spills; ///< one a thread, from the end of its rows upwards
 };
 

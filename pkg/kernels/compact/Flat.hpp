@@ -40,16 +40,15 @@ struct alignas(32) Push {
 
 inline Load noLoad() { return {Vec3::Zero(), Vec3::Zero()}; }
 
-/// What a contact remembers, and its parameters: two cache lines.
-struct alignas(64) ContactMemory {
+/// What a contact remembers, and its parameters.
+struct ContactMemory {
 	Vec3 shear;  ///< shear force on the second body (N)
 	Vec3 moment; ///< bending moment on it (N m)
 	Vec3 normal; ///< of the last step
 	ContactLaw law;
 };
 
-static_assert(sizeof(Place) == 32 && sizeof(Push) == 32 && sizeof(Motion) == 64 && sizeof(Load) == 64 && sizeof(ContactMemory) == 128,
-              "the layout that the loops are made for");
+static_assert(sizeof(Place) == 32 && sizeof(Push) == 32 && sizeof(Motion) == 64 && sizeof(Load) == 64, "the layout that the loops are made for");
 
 /// Bits of a contact.
 enum ContactBits : unsigned char { contactTouching = 1, contactBonded = 2 };

@@ -48,15 +48,17 @@ void FlatAssembly::setMaterials(const std::vector<ContactMaterial>& table)
 {
 	if (table == materials) return;
 	const bool first = materials.empty();
+	if (table.size() > 255)
+		reject("CompactLoop materials", double(table.size()), "too many", "255 materials at most: bodies with the same parameters can share one");
 	materials = table;
+	frictions.clear();
+	for (const ContactMaterial& a : table)
+		for (const ContactMaterial& b : table) frictions.push_back({std::min(a.friction, b.friction), std::min(a.rollingFriction, b.rollingFriction)});
 	if (first || listed.empty()) return;
-	// friction may have come or gone, and with it what a list holds
+	// laws are made with the lists; friction may have come or gone, and with it what a list holds
 	std::vector<int> same(places.size());
 	std::iota(same.begin(), same.end(), 0);
 	buildLists(same);
-	contacts.renewLaws([this](int i, int j) { return lawOf(i, j); });
-	for (std::size_t b = 0; b < boundaries.size(); ++b)
-		boundaryContacts[b].renewLaws([&](int i) { return boundaryLaw(materials[boundaries[b].material], materials[material[i]], places[i].radius); });
 }
 
 bool FlatAssembly::listsHold()
@@ -194,7 +196,7 @@ void FlatAssembly::buildLists(const std::vector<int>& newIndex)
 	NearPairs general;
 	std::vector<NormalList::Pair> frictionless;
 	findPairs(general, frictionless);
-	contacts.rebuild(std::move(general), newIndex, [this](int i, int j) { return lawOf(i, j); });
+	contacts.rebuild(std::move(general), newIndex, frictions, [this](int i, int j) { return lawOfKind(i, j); });
 	smooth.rebuild(frictionless, grainCount, spheres() - grainCount, [this](int i, int j) { return lawOf(i, j).kn; });
 	runs = {};
 	loadsStale = true;
@@ -203,8 +205,7 @@ void FlatAssembly::buildLists(const std::vector<int>& newIndex)
 		std::vector<int> near;
 		for (int i = 0; i < spheres(); ++i)
 			if (listedBoundaries[b].near({listed[i], places[i].radius}, gap)) near.push_back(i);
-		boundaryContacts[b].rebuild(std::move(near), newIndex,
-		                            [&](int i) { return boundaryLaw(materials[boundaries[b].material], materials[material[i]], places[i].radius); });
+		boundaryContacts[b].rebuild(std::move(near), newIndex, frictions, [&](int i) { return lawOfKind(boundaries[b], i); });
 	}
 }
 

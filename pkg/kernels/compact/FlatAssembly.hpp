@@ -107,6 +107,12 @@ private:
 	void divide(int threads);
 	void listLoaded();
 	void clearLoads(int from, int to, bool all);
+	LawOfKind lawOfKind(int i, int j) const { return {lawOf(i, j), material[i] * int(materials.size()) + material[j]}; }
+	LawOfKind lawOfKind(const FlatBoundary& boundary, int i) const
+	{
+		return {boundaryLaw(materials[boundary.material], materials[material[i]], places[i].radius),
+		        boundary.material * int(materials.size()) + material[i]};
+	}
 	void findPairs(NearPairs& general, std::vector<NormalList::Pair>& frictionless) const;
 	/// Whether a contact of these two has neither friction nor rolling resistance.
 	bool isSmooth(int i, int j) const
@@ -122,6 +128,7 @@ private:
 	double gap = 0, fastest = 0;
 	long made = 0;
 	std::vector<ContactMaterial> materials;
+	std::vector<Frictions> frictions; ///< of every pair of materials
 	std::function<bool(int, int)> bondedNeighbours;
 };
 

@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "Flat.hpp"
+#include "ContactStore.hpp"
 #include "kernels/Lanes.hpp"
 
 #include <cstddef>
@@ -13,7 +13,8 @@ namespace hexmembrane {
 /// What four contacts remember, and the parameters of their laws.
 struct FourMemories {
 	Lanes3 shear, moment, normal;
-	Lanes kn, ks, friction, kr, rollingArm;
+	Lanes kn, ks, lever;             ///< as in PackedContact
+	Lanes friction, rollingFriction; ///< by kind
 };
 
 /// How four contacts moved in a step.
@@ -29,13 +30,12 @@ struct FourSteps {
 	Lanes slipWork, rollWork; ///< as in ContactStep
 };
 
-static_assert(offsetof(ContactMemory, moment) == 3 * sizeof(double) && offsetof(ContactMemory, normal) == 6 * sizeof(double) &&
-                      offsetof(ContactMemory, law) == 9 * sizeof(double) && offsetof(ContactLaw, rollingArm) == 4 * sizeof(double),
-              "a memory is read as four rows of four doubles");
+static_assert(offsetof(PackedContact, moment) == 3 * sizeof(double) && offsetof(PackedContact, kn) == 9 * sizeof(double),
+              "a contact is read as three rows of four doubles");
 
-HEXMEMBRANE_INLINE void loadRow(const ContactMemory* const* memories, int row, Lanes& a, Lanes& b, Lanes& c, Lanes& d)
+HEXMEMBRANE_INLINE void loadRow(const PackedContact* const* contacts, int row, Lanes& a, Lanes& b, Lanes& c, Lanes& d)
 {
-	const auto part = [&](int k) __attribute__((always_inline)) { return load4(reinterpret_cast<const double*>(memories[k]) + 4 * row); };
+	const auto part = [&](int k) __attribute__((always_inline)) { return load4(reinterpret_cast<const double*>(contacts[k]) + 4 * row); };
 	a = part(0);
 	b = part(1);
 	c = part(2);
@@ -43,32 +43,30 @@ HEXMEMBRANE_INLINE void loadRow(const ContactMemory* const* memories, int row, L
 	transpose(a, b, c, d);
 }
 
-HEXMEMBRANE_INLINE void storeRow(ContactMemory* const* memories, int row, Lanes a, Lanes b, Lanes c, Lanes d)
+HEXMEMBRANE_INLINE void storeRow(PackedContact* const* contacts, int row, Lanes a, Lanes b, Lanes c, Lanes d)
 {
 	transpose(a, b, c, d);
-	const auto part = [&](int k, Lanes v) __attribute__((always_inline)) { store4(reinterpret_cast<double*>(memories[k]) + 4 * row, v); };
+	const auto part = [&](int k, Lanes v) __attribute__((always_inline)) { store4(reinterpret_cast<double*>(contacts[k]) + 4 * row, v); };
 	part(0, a);
 	part(1, b);
 	part(2, c);
 	part(3, d);
 }
 
-HEXMEMBRANE_INLINE FourMemories loadMemories(const ContactMemory* const* memories)
+HEXMEMBRANE_INLINE FourMemories loadMemories(const PackedContact* const* contacts)
 {
 	FourMemories m;
-	Lanes tensile, shear; // strengths of bonds: not needed
-	loadRow(memories, 0, m.shear.x, m.shear.y, m.shear.z, m.moment.x);
-	loadRow(memories, 1, m.moment.y, m.moment.z, m.normal.x, m.normal.y);
-	loadRow(memories, 2, m.normal.z, m.kn, m.ks, m.friction);
-	loadRow(memories, 3, m.kr, m.rollingArm, tensile, shear);
+	loadRow(contacts, 0, m.shear.x, m.shear.y, m.shear.z, m.moment.x);
+	loadRow(contacts, 1, m.moment.y, m.moment.z, m.normal.x, m.normal.y);
+	loadRow(contacts, 2, m.normal.z, m.kn, m.ks, m.lever);
 	return m;
 }
 
-HEXMEMBRANE_INLINE void storeMemories(const FourMemories& m, ContactMemory* const* memories)
+HEXMEMBRANE_INLINE void storeMemories(const FourMemories& m, PackedContact* const* contacts)
 {
-	storeRow(memories, 0, m.shear.x, m.shear.y, m.shear.z, m.moment.x);
-	storeRow(memories, 1, m.moment.y, m.moment.z, m.normal.x, m.normal.y);
-	storeRow(memories, 2, m.normal.z, m.kn, m.ks, m.friction);
+	storeRow(contacts, 0, m.shear.x, m.shear.y, m.shear.z, m.moment.x);
+	storeRow(contacts, 1, m.moment.y, m.moment.z, m.normal.x, m.normal.y);
+	storeRow(contacts, 2, m.normal.z, m.kn, m.ks, m.lever);
 }
 
 HEXMEMBRANE_INLINE Lanes3 acrossNormal(const Lanes3& v, const Lanes3& normal) { return v - dot(normal, v) * normal; }
@@ -119,13 +117,15 @@ HEXMEMBRANE_INLINE ContactPath contactPath(const Lanes3& normal, const Lanes3& v
 HEXMEMBRANE_INLINE FourSteps advanceFour(FourMemories& m, const Lanes3& normal, Lanes overlap, const ContactPath& path)
 {
 	const Lanes3 tilt = cross(m.normal, normal), twist = dot(m.normal, path.spin) * m.normal;
+	const Lanes kr = m.ks * m.lever * m.lever;
 	FourSteps step;
 	step.open = overlap < 0;
 	step.normalForce = step.open ? lanes(0) : m.kn * overlap;
 	m.shear = carried(m.shear, tilt, twist);
 	m.moment = carried(m.moment, tilt, twist);
-	const FourCut slip(m.shear, path.slide, m.ks, m.friction * step.normalForce), roll(m.moment, path.bend, m.kr, m.rollingArm * step.normalForce);
-	Lanes perShear = squareRoot(slip.square), perMoment = squareRoot(roll.square), perKs = m.ks, perKr = m.kr;
+	const FourCut slip(m.shear, path.slide, m.ks, m.friction * step.normalForce);
+	const FourCut roll(m.moment, path.bend, kr, m.rollingFriction * m.lever * step.normalForce);
+	Lanes perShear = squareRoot(slip.square), perMoment = squareRoot(roll.square), perKs = m.ks, perKr = kr;
 	invert(perShear, perMoment, 1e-100);
 	invert(perKs, perKr, 1e-100);
 	step.slipWork = 0.5 * perKs * slip.keep(step.open, perShear, m.shear);
@@ -154,18 +154,25 @@ struct FourSums {
 	}
 };
 
-/// The law for four contacts whose memories and bits stand at `index`.
-HEXMEMBRANE_INLINE void advance(ContactMemory* all, unsigned char* bits, const int* index, Four& four, FourSums& sums)
+/// The law for the four contacts at `index`.
+HEXMEMBRANE_INLINE void advance(ContactStore& store, const int* index, Four& four, FourSums& sums)
 {
-	ContactMemory* const memories[4] = {all + index[0], all + index[1], all + index[2], all + index[3]};
-	FourMemories m = loadMemories(memories);
+	PackedContact* const all = store.contacts.data();
+	PackedContact* const contacts[4] = {all + index[0], all + index[1], all + index[2], all + index[3]};
+	const Frictions* const table = store.frictions.data();
+	const std::uint16_t* const kinds = store.kinds.data();
+	const Frictions &a = table[kinds[index[0]]], &b = table[kinds[index[1]]], &c = table[kinds[index[2]]], &d = table[kinds[index[3]]];
+	FourMemories m = loadMemories(contacts);
+	m.friction = Lanes{a.sliding, b.sliding, c.sliding, d.sliding};
+	m.rollingFriction = Lanes{a.rolling, b.rolling, c.rolling, d.rolling};
 	const FourSteps step = advanceFour(m, four.normal, four.overlap, four.path);
-	storeMemories(m, memories);
+	storeMemories(m, contacts);
 	sums.slip += step.slipWork;
 	sums.roll += step.rollWork;
 	four.shear = m.shear;
 	four.moment = m.moment;
 	four.normalForce = step.normalForce;
+	unsigned char* const bits = store.bits.data();
 	for (int k = 0; k < 4; ++k) bits[index[k]] = static_cast<unsigned char>(contactTouching + step.open[k]);
 }
 

@@ -33,8 +33,11 @@ void sweepOne(const PairSweep& s, int p, int i, int j, SweepSums& sums)
 	const Vec3 normal = branch / distance;
 	const double arm1 = a.radius - 0.5 * u, arm2 = b.radius - 0.5 * u;
 	Vec3 force;
-	ContactMemory& memory = s.memories[p];
-	if (!advanceMemory(memory, s.bits[p], u, normal, s.motions[i], arm1 * normal, s.motions[j], -arm2 * normal, s.dt, force, sums)) return;
+	ContactMemory memory = s.store->get(p);
+	unsigned char bits = s.store->bits[p];
+	const bool closed = advanceMemory(memory, bits, u, normal, s.motions[i], arm1 * normal, s.motions[j], -arm2 * normal, s.dt, force, sums);
+	s.store->put(p, memory, bits);
+	if (!closed) return;
 	const Vec3 turning = normal.cross(memory.shear);
 	s.loads[i] += {-force, -arm1 * turning - memory.moment};
 	loadOf(s, j) += {force, memory.moment - arm2 * turning};
@@ -44,12 +47,15 @@ void sweepOne(const PairSweep& s, int p, int i, int j, SweepSums& sums)
 HEXMEMBRANE_INLINE bool pick(const PairSweep& s, int p, int end, Touching& found)
 {
 	const int *const first = s.first, *const second = s.second;
-	const unsigned char* const bits = s.bits;
+	const unsigned char* const bits = s.store->bits.data();
 	const Place* const places = s.places;
 	int count = found.count;
 	unsigned char any = 0;
 	for (; p < end; ++p) {
 		const int i = first[p], j = second[p];
+		// what the next two passes need of it; the sphere before it in the row has been fetched before
+		__builtin_prefetch(s.motions + j);
+		__builtin_prefetch(s.loads + j, 1);
 		const Lanes a = load4(places[i].centre.data()), b = load4(places[j].centre.data());
 		const Lanes branch = __builtin_shufflevector(b - a, b + a, 0, 1, 2, 7);
 		store4(found.branch[count], branch);
@@ -137,12 +143,12 @@ HEXMEMBRANE_WIDEST void sweepWidest(const PairSweep& s, FourSums& sumsOfFours, S
 		const int border = std::min(s.end, p + Touching::look);
 		if (pick(s, p, border, found))
 			for (int b = p; b < border; ++b)
-				if (s.bits[b] & contactBonded) sweepOne(s, b, s.first[b], s.second[b], sums);
+				if (s.store->bits[b] & contactBonded) sweepOne(s, b, s.first[b], s.second[b], sums);
 		// one after the other: in short loops without a bond between turns the processor works at several turns at once
 		const int fours = found.count / 4;
 		for (int f = 0; f < fours; ++f) measure(s, found, f);
 		for (int f = 0; f < fours; ++f) follow(s, found, f);
-		for (int f = 0; f < fours; ++f) advance(s.memories, s.bits, found.pair + 4 * f, found.fours[f], sumsOfFours);
+		for (int f = 0; f < fours; ++f) advance(*s.store, found.pair + 4 * f, found.fours[f], sumsOfFours);
 		for (int f = 0; f < fours; ++f) act(s, found, f);
 		const int at = 4 * fours;
 		// what is left of the last four goes first next time

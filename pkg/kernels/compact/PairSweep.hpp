@@ -1,15 +1,14 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "Flat.hpp"
+#include "ContactStore.hpp"
 
 namespace hexmembrane {
 
 /// The arrays of a sweep over pairs of spheres, see ContactList::sweep.
 struct PairSweep {
 	const int *first, *second; ///< spheres of each pair
-	ContactMemory* memories;
-	unsigned char* bits;
+	ContactStore* store;
 	const Place* places;
 	const Motion* motions;
 	Load* loads;
