@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How much of the confining pressure arrives at the study's specimen, over membrane sizes and pressures, with our settings and with the study's.
 
-	scripts/yade scripts/pressure_study.py PACKING OUT
+	scripts/yade -x scripts/pressure_study.py PACKING OUT [NAME ...]
 
-PACKING: the packing.txt of a test of examples/paper. OUT: folder for the tests (those that are there are not run again); ``table.md`` in it is what
+NAME: of a test (ours-1.25mm-100kPa, say), to run only some. PACKING: the packing.txt of a test of examples/paper. OUT: folder for the tests (those that are there are not run again); ``table.md`` in it is what
 examples/paper/pressure.md shows. Our settings are run to the end of shear, 5 minutes (1.25 mm) to 45 minutes (0.25 mm) of one core each; the study's are consolidated
 only, half a minute to two minutes each: their loop is open, and what they press too hard does not change in shear but for the membrane's tension.
 """
@@ -41,7 +41,7 @@ def measured(config, out, until):
 	"""The last row of the consolidation, the rows of shear (arrays by column), and the membrane's sphere radius [m]."""
 	if not (out / f"{until}.yade.gz").is_file():
 		O.reset()
-		run(config, out, until="consolidation" if until == "consolidated" else None, quiet=True)
+		run(config, out, until="consolidation" if until == "consolidated" else "shear", quiet=True)
 	table = records.read(out / "records.csv")
 	shear = numpy.array([stage == "shear" for stage in table["stage"]])
 	last = int(numpy.flatnonzero(~shear)[-1])
@@ -55,7 +55,7 @@ def within(values):
 	return f"{values.min():.2f} to {values.max():.2f} %" if len(values) else ""
 
 
-def main(packing, out):
+def main(packing, out, *names):
 	paper = configuration.load(pathlib.Path(sys.argv[0]).resolve().parents[1] / "examples" / "paper" / "flexible-100.yaml")
 	own = {"packing": str(pathlib.Path(packing).resolve()), "gradation": None, "grains": None, "cutBelow": None, "cutAbove": None}
 	paper = configuration.derived(paper, {"specimen": own, "output": {"vtkEvery": 0}})
@@ -63,7 +63,12 @@ def main(packing, out):
 		"| R [mm] | R/r | sigma3 [kPa] | settings | main body | beside platens | whole | main body in shear | membrane's own share | the same in shear | main body without it | R/(Rc - R) |",
 		"| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
 	]
+	unknown = set(names) - {name for name, _ in tests(paper)}
+	if unknown:
+		raise SystemExit(f"pressure_study.py: no test {', '.join(sorted(unknown))}; fix: one of {', '.join(name for name, _ in tests(paper))}")
 	for name, config in tests(paper):
+		if names and name not in names:
+			continue
 		label = name.split("-")[0]
 		row, shear, radius = measured(config, pathlib.Path(out) / name, "sheared" if label == "ours" else "consolidated")
 		target = row["sigma3_target"]
@@ -88,4 +93,4 @@ def main(packing, out):
 
 
 if __name__ == "__main__":
-	main(*sys.argv[1:3])
+	main(*sys.argv[1:])

@@ -17,6 +17,17 @@ void damp(Vec3& force, const Vec3& velocity, double share)
 	for (int axis = 0; axis < 3; ++axis) force[axis] *= force[axis] * velocity[axis] > 0 ? 1 - share : 1 + share;
 }
 
+/// Adds to a spring's load, keeps it in the contact plane and below its limit. \return whether it was above
+bool load(Vec3& spring, const Vec3& increment, const Vec3& normal, double limit)
+{
+	spring += increment;
+	spring -= spring.dot(normal) * normal;
+	const double square = spring.squaredNorm();
+	if (!(square > limit * limit)) return false;
+	spring *= limit / std::sqrt(square);
+	return true;
+}
+
 } // namespace
 
 GrainAssembly::GrainAssembly(std::vector<Vec3> centres, std::vector<double> radii, double factor, double radius, double height, const GrainLaw& grainLaw)
@@ -36,16 +47,19 @@ void GrainAssembly::refreshPairs()
 		if (valid) return;
 	}
 	NearPairs found = findNearPairs(x, r, skin, Vec3(-cylinderRadius, -cylinderRadius, 0), Vec3(cylinderRadius, cylinderRadius, cylinderHeight));
-	// both lists are sorted: shear springs move over by a merge
-	std::vector<Vec3> moved(found.other.size(), Vec3::Zero());
+	// both lists are sorted: springs move over by a merge
+	std::vector<Vec3> moved(found.other.size(), Vec3::Zero()), movedMoment = moved;
 	for (std::size_t i = 0; i + 1 < pairs.start.size(); ++i) {
 		int old = pairs.start[i];
 		for (int k = found.start[i]; k < found.start[i + 1]; ++k) {
 			while (old < pairs.start[i + 1] && pairs.other[old] < found.other[k]) ++old;
-			if (old < pairs.start[i + 1] && pairs.other[old] == found.other[k]) moved[k] = shear[old];
+			if (old == pairs.start[i + 1] || pairs.other[old] != found.other[k]) continue;
+			moved[k] = shear[old];
+			movedMoment[k] = moment[old];
 		}
 	}
 	shear.swap(moved);
+	moment.swap(movedMoment);
 	pairs = std::move(found);
 	listed = x;
 	listedSize = size;
@@ -87,7 +101,7 @@ void GrainAssembly::computeForces()
 			const double reach = r[i] + r[j];
 			const double dist2 = d.squaredNorm();
 			if (dist2 >= reach * reach) {
-				shear[k] = Vec3::Zero();
+				shear[k] = moment[k] = Vec3::Zero();
 				continue;
 			}
 			const double dist = std::sqrt(dist2);
@@ -97,13 +111,14 @@ void GrainAssembly::computeForces()
 			const double armI = dist * r[i] / reach, armJ = dist - armI;
 			// velocity of j's side of the contact against i's
 			const Vec3 slip = v[j] - v[i] - (armI * w[i] + armJ * w[j]).cross(n);
+			const double ks = kn / law.stiffnessRatio;
 			Vec3& s = shear[k];
-			s += (kn / law.stiffnessRatio * timeStep) * slip;
-			s -= s.dot(n) * n;
-			const double limit = law.friction * normal, s2 = s.squaredNorm();
-			if (s2 > limit * limit) {
-				s *= limit / std::sqrt(s2);
-				++slidingCount;
+			if (load(s, (ks * timeStep) * slip, n, law.friction * normal)) ++slidingCount;
+			if (law.rollingFriction > 0) {
+				const double lever = r[i] * r[j] / reach;
+				load(moment[k], (ks * lever * lever * timeStep) * (w[j] - w[i]), n, law.rollingFriction * lever * normal);
+				t[i] += moment[k];
+				t[j] -= moment[k];
 			}
 			const Vec3 onI = s - normal * n;
 			f[i] += onI;

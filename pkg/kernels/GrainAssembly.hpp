@@ -8,12 +8,13 @@
 
 namespace hexmembrane {
 
-/// Contact law of the grains of a GrainAssembly: linear and frictional.
+/// Contact law of the grains of a GrainAssembly: linear, frictional, with rolling resistance if wished.
 struct GrainLaw {
-	double modulus;        ///< Pa, > 0: two grains have kn = 2 modulus r1 r2/(r1 + r2), grain and wall kn = modulus r
-	double stiffnessRatio; ///< kn/ks, > 0
-	double friction;       ///< of grains with each other, >= 0; the walls are smooth
-	double damping;        ///< local damping: share of every net force that opposes the motion, in [0, 1)
+	double modulus;             ///< Pa, > 0: two grains have kn = 2 modulus r1 r2/(r1 + r2), grain and wall kn = modulus r
+	double stiffnessRatio;      ///< kn/ks, > 0
+	double friction;            ///< of grains with each other, >= 0; the walls are smooth
+	double damping;             ///< local damping: share of every net force that opposes the motion, in [0, 1)
+	double rollingFriction = 0; ///< of grains with each other, >= 0; kr = ks Rbar^2, moment at most rollingFriction Rbar N, Rbar = r1 r2/(r1 + r2)
 };
 
 /// Discrete elements in the smallest form that makes a stressed packing: frictional spheres inside a fixed, smooth vertical cylinder, compressed by
@@ -21,7 +22,7 @@ struct GrainLaw {
 /// all sizes; nothing here has a meaning in seconds. Axis z, lower end on z = 0. One thread, sums in a fixed order: same input, same bits.
 ///
 /// Shear springs: the tangential displacement of the contact point is added up, turned with the normal (what leaves the tangent plane is dropped) and
-/// limited by friction. No rolling resistance.
+/// limited by friction. Rolling springs, where there is rolling friction, the same with the difference of the spins.
 class GrainAssembly {
 public:
 	/// Input is the caller's to check. Radii in m, at factor 1.
@@ -30,7 +31,11 @@ public:
 	/// One step; radii grow by `growth` times their size in it.
 	void step(double growth);
 
-	void setFriction(double friction) { law.friction = friction; }
+	void setFriction(double friction, double rollingFriction)
+	{
+		law.friction = friction;
+		law.rollingFriction = rollingFriction;
+	}
 	double friction() const { return law.friction; }
 	double factor() const { return size; }
 
@@ -61,7 +66,8 @@ private:
 	GrainLaw law;
 
 	NearPairs pairs;
-	std::vector<Vec3> shear; // force of each pair's shear spring on its first grain
+	std::vector<Vec3> shear;  // force of each pair's shear spring on its first grain
+	std::vector<Vec3> moment; // of its rolling spring
 	std::vector<Vec3> listed;
 	double listedSize = 0; // 0: no list yet
 

@@ -30,6 +30,7 @@ void check(const StressedPackingSpec& s)
 	requirePositive("CylinderPacking.young", s.law.modulus, "Pa");
 	requirePositive("CylinderPacking.stiffnessRatio", s.law.stiffnessRatio, "1 (kn/ks)");
 	requireNonNegative("CylinderPacking.friction", s.law.friction, "1 (tan of the angle)");
+	requireNonNegative("CylinderPacking.rollingFriction", s.law.rollingFriction, "1");
 	requireNonNegative("CylinderPacking.damping", s.law.damping, "1");
 	requirePositive("CylinderPacking.porosityTolerance", s.porosityTolerance, "1");
 	if (s.law.stiffnessRatio < 1)
@@ -47,7 +48,7 @@ void check(const StressedPackingSpec& s)
 class Compactor {
 public:
 	Compactor(const StressedPackingSpec& spec, const SpherePacking& start, double toSize)
-	    : wanted(spec.stress), final(spec.law.friction), friction(final),
+	    : wanted(spec.stress), final(spec.law.friction), rolling(spec.law.rollingFriction), friction(final),
 	      growth(inertialNumber / std::sqrt(spec.law.modulus / (2 * spec.stress)) * GrainAssembly::timeStep),
 	      loss(frictionLoss / std::sqrt(spec.law.modulus / (2 * spec.stress)) * GrainAssembly::timeStep),
 	      grains(start.centres, scaledBy(start.radii, toSize), 1 / toSize, spec.packing.radius, spec.packing.height, spec.law)
@@ -69,7 +70,7 @@ public:
 	/// With the final friction: size follows the stress until both stand still. Slow, so that what it does to the stress is seen in time.
 	void settle()
 	{
-		grains.setFriction(final);
+		grains.setFriction(final, rolling);
 		for (int good = 0, step = 1; good < looks; ++step) {
 			const double lack = 1 - over();
 			grains.step(growth * (lack > 0.5 ? 1 : 0.1) * std::clamp(lack, -1.0, 1.0));
@@ -96,7 +97,7 @@ private:
 	{
 		if (over() <= 1) return;
 		friction *= 1 - loss * std::min(over() - 1, 1.0);
-		grains.setFriction(friction);
+		grains.setFriction(friction, rolling * (friction / final));
 	}
 
 	void count()
@@ -107,7 +108,7 @@ private:
 			                         " Pa; fix: a higher stress, more damping, or another porosity");
 	}
 
-	double wanted, final, friction, growth, loss;
+	double wanted, final, rolling, friction, growth, loss;
 	long made = 0;
 	GrainAssembly grains;
 };
@@ -118,9 +119,10 @@ private:
 	const double advised = tooDense ? std::ceil((reached + 0.002) * 1000) / 1000 : std::floor((reached - 0.01) * 1000) / 1000;
 	throw std::runtime_error("CylinderPacking.porosity = " + formatNumber(spec.packing.porosity) + ": " + (tooDense ? "denser" : "looser") +
 	                         " than these " + std::to_string(spec.packing.radii.size()) + " grains get at " + formatNumber(spec.stress) +
-	                         " Pa with friction " + formatNumber(spec.law.friction) + ", " + formatNumber(reached) +
-	                         " was reached; fix: a porosity of at " + (tooDense ? "least " : "most ") + formatNumber(advised) +
-	                         (tooDense ? "" : ", or more friction"));
+	                         " Pa with friction " + formatNumber(spec.law.friction) +
+	                         (spec.law.rollingFriction > 0 ? " and rolling friction " + formatNumber(spec.law.rollingFriction) : "") + ", " +
+	                         formatNumber(reached) + " was reached; fix: a porosity of at " + (tooDense ? "least " : "most ") + formatNumber(advised) +
+	                         (tooDense ? "" : ", or more friction or rolling friction"));
 }
 
 } // namespace

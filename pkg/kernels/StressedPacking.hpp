@@ -10,7 +10,7 @@ namespace hexmembrane {
 struct StressedPackingSpec {
 	SpherePackingSpec packing;       ///< its porosity is required
 	double stress;                   ///< Pa, > 0: mean pressure on the smooth walls; at most 1e-2 of the modulus
-	GrainLaw law;                    ///< friction is that of the finished packing
+	GrainLaw law;                    ///< friction and rolling friction are those of the finished packing
 	double porosityTolerance = 1e-3; ///< in (0, 0.1)
 };
 
@@ -26,11 +26,12 @@ struct StressedPacking : SpherePacking {
 
 /// Compresses an uneven, loose packing (SpherePacking at 0.08 above the wanted porosity, not spread) by growing its grains inside fixed smooth walls,
 /// slowly (inertial number 1e-3 and less), starting with the friction of the finished packing. Where the mean stress exceeds the wanted one, friction is
-/// lowered until the grains give way: so the packing reaches the wanted size at the wanted stress whatever its porosity, on one path and without
+/// lowered, and rolling friction with it, until the grains give way: so the packing reaches the wanted size at the wanted stress whatever its porosity, on one path and without
 /// trials. Then friction is set to its final value and the size trimmed within the tolerance of the porosity until stress (3 %) and equilibrium
 /// (unbalanced ratio 1e-3) are there.
 ///
-/// Reachable is what lies between the packing without friction (dense) and the one that keeps its friction throughout (loose); anything beyond is an
+/// Reachable is what lies between the packing without friction (dense) and the one that keeps its friction throughout (loose; rolling friction holds looser
+/// ones); anything beyond is an
 /// error that names the porosity reached. Measured ranges: pkg/specimen/README.md.
 /// \throws std::invalid_argument for bad input, std::runtime_error for a porosity out of reach or no equilibrium
 StressedPacking packUnderStress(const StressedPackingSpec& spec);

@@ -38,7 +38,7 @@ void CylinderPacking::generate()
 	spec.tolerance = static_cast<double>(tolerance);
 	spec.shakes = shakes;
 	under.stress = static_cast<double>(stress);
-	under.law = {static_cast<double>(young), static_cast<double>(stiffnessRatio), static_cast<double>(friction), 0.5};
+	under.law = {static_cast<double>(young), static_cast<double>(stiffnessRatio), static_cast<double>(friction), 0.5, static_cast<double>(rollingFriction)};
 	under.porosityTolerance = static_cast<double>(porosityTolerance);
 
 	hexmembrane::StressedPacking made;

@@ -57,6 +57,7 @@ public:
 		((Real,young,NaN,,"Contact modulus [Pa], required with a stress: kn = 2 young r1 r2/(r1+r2) between grains, young r at a wall (as YADE's FrictMat has it with equal moduli)."))
 		((Real,stiffnessRatio,3,,"kn/ks of the contacts [-], >= 1."))
 		((Real,friction,NaN,,"Coefficient of friction between the grains of the finished packing [-], required with a stress. The walls are smooth."))
+		((Real,rollingFriction,0,,"Coefficient of rolling friction $\\mu_r$ between the grains of the finished packing [-], >= 0: moment at most $\\mu_r r_1 r_2/(r_1+r_2) F_n$. With it looser packings hold."))
 		((Real,porosityTolerance,1e-3,,"By how much the porosity of a packing under stress may differ from the wanted one [-], in (0, 0.1)."))
 		((vector<Vector3r>,packedCentres,,Attr::hidden,"See centres."))
 		((vector<Real>,packedRadii,,Attr::hidden,"See sizes."))

@@ -49,6 +49,9 @@ class Specimen:
 	)
 	friction: float = key(0.5, "coefficient of friction between grains, tan of the angle; also of a packing made under stress", "", low=0, high=5)
 	rollingFriction: float = key(0.0, "coefficient of rolling friction mu_r between grains, moment <= mu_r R1 R2/(R1 + R2) Fn", "", low=0, high=5)
+	packingRollingFriction: float = key(
+		0.0, "coefficient of rolling friction while a packing is made under stress; looser ones need it, it may be rollingFriction's value", "", low=0, high=5
+	)
 	emod: float = key(
 		4e7,
 		"contact modulus of PFC's deformability: kn = pi emod min(R1, R2)^2/(R1 + R2), pi emod R on platens and wall; "

@@ -53,7 +53,8 @@ def make(config, say):
 	radius = scene.soilRadius(config)
 	stressed = {}
 	if given.stress is not None:
-		stressed = {"stress": given.stress, "young": math.pi * given.emod / 2, "stiffnessRatio": given.kratio, "friction": given.friction}
+		stressed = {"stress": given.stress, "young": math.pi * given.emod / 2, "stiffnessRatio": given.kratio}
+		stressed.update(friction=given.friction, rollingFriction=given.packingRollingFriction)
 	packing = yade.CylinderPacking(
 		radius=radius, height=given.height, radii=radii(given, radius, given.height).tolist(), porosity=given.porosity, seed=given.seed, **stressed
 	)

@@ -32,7 +32,7 @@ struct Reference {
 	GrainLaw law;
 	double size = 1, side = 0;
 	std::vector<Vec3> v, w;
-	std::map<std::pair<std::size_t, std::size_t>, Vec3> shear;
+	std::map<std::pair<std::size_t, std::size_t>, Vec3> shear, moment;
 
 	void step(double growth)
 	{
@@ -46,6 +46,7 @@ struct Reference {
 				const double rj = base[j] * size, dist = (x[j] - x[i]).norm(), kn = 2 * law.modulus / (1 / ri + 1 / rj);
 				if (dist >= ri + rj) {
 					shear.erase({i, j});
+					moment.erase({i, j});
 					continue;
 				}
 				const Vec3 n = (x[j] - x[i]).normalized(), atI = n * dist * ri / (ri + rj), atJ = -n * dist * rj / (ri + rj);
@@ -59,6 +60,13 @@ struct Reference {
 				f[j] -= s - normal * n;
 				t[i] += atI.cross(s);
 				t[j] += atJ.cross(-s);
+				const double lever = 1 / (1 / ri + 1 / rj), most = law.rollingFriction * lever * normal;
+				Vec3& m = moment.emplace(std::make_pair(i, j), Vec3::Zero()).first->second;
+				m += kn / law.stiffnessRatio * lever * lever * dt * (w[j] - w[i]);
+				m -= n * n.dot(m);
+				if (m.norm() > most) m = m.normalized() * most;
+				t[i] += m;
+				t[j] -= m;
 			}
 			const double k = law.modulus * ri, out = std::hypot(x[i][0], x[i][1]);
 			f[i][2] += k * std::max(0., ri - x[i][2]) - k * std::max(0., x[i][2] + ri - H);
@@ -167,34 +175,43 @@ TEST(GrainAssembly, slidingContactsCarryNoMoreThanFriction)
 		slid += g.sliding();
 	}
 	EXPECT_GT(slid, 10);
-	g.setFriction(1e3);
+	g.setFriction(1e3, 0);
 	g.step(0);
 	EXPECT_EQ(g.sliding(), 0);
 }
 
 TEST(GrainAssembly, equalsTheSlowReference)
 {
-	const StressedPackingSpec c = spec(0.45);
+	StressedPackingSpec c = spec(0.45);
 	SpherePackingSpec loose = c.packing;
 	loose.radii.resize(60);
 	loose.porosity = 0.5;
 	loose.even = 0; // grains nearly touch: there are contacts from the start, and not yet the chaos of a long run
 	const SpherePacking p = packSpheres(loose);
-	GrainAssembly fast(p.centres, p.radii, 1, R, H, c.law);
-	Reference slow(p, c.law);
-	for (int i = 0; i < 600; ++i) {
-		fast.step(2e-5);
-		slow.step(2e-5);
-		if (i == 400) {
-			fast.setFriction(0.05);
-			slow.law.friction = 0.05;
+	std::vector<Vec3> without;
+	for (const double rolling : {0., 0.3}) {
+		c.law.rollingFriction = rolling;
+		GrainAssembly fast(p.centres, p.radii, 1, R, H, c.law);
+		Reference slow(p, c.law);
+		for (int i = 0; i < 600; ++i) {
+			fast.step(2e-5);
+			slow.step(2e-5);
+			if (i == 400) {
+				fast.setFriction(0.05, 0.1 * rolling);
+				slow.law.friction = 0.05;
+				slow.law.rollingFriction = 0.1 * rolling;
+			}
+			if (i % 100 != 99) continue;
+			ASSERT_LT(support::relativeDifference(fast.centres(), slow.x), 1e-9) << i;
 		}
-		if (i % 100 != 99) continue;
-		ASSERT_LT(support::relativeDifference(fast.centres(), slow.x), 1e-9) << i;
+		EXPECT_GT(fast.sliding(), 10);
+		EXPECT_GT(fast.contacts() - fast.sliding(), 10);
+		EXPECT_NEAR(slow.side / (2 * M_PI * R * H) / fast.radialStress(), 1, 1e-6);
+		if (rolling == 0)
+			without = slow.x;
+		else
+			EXPECT_GT(support::relativeDifference(without, slow.x), 1e-6) << "rolling resistance has not acted";
 	}
-	EXPECT_GT(fast.sliding(), 10);
-	EXPECT_GT(fast.contacts() - fast.sliding(), 10);
-	EXPECT_NEAR(slow.side / (2 * M_PI * R * H) / fast.radialStress(), 1, 1e-6);
 }
 
 TEST(GrainAssembly, forcesAmongGrainsAddUpToNothing)
@@ -283,6 +300,17 @@ TEST(StressedPacking, saysWhatCanBeReached)
 		EXPECT_NEAR(packUnderStress(spec(porosity)).porosity, porosity, 1e-3);
 }
 
+TEST(StressedPacking, rollingFrictionHoldsLooserOnes)
+{
+	StressedPackingSpec loose = spec(0.49);
+	EXPECT_THROW(packUnderStress(loose), std::runtime_error);
+	loose.law.rollingFriction = 0.5;
+	const StressedPacking p = packUnderStress(loose);
+	EXPECT_NEAR(p.porosity, 0.49, 1e-3);
+	EXPECT_NEAR((2 * p.radialStress + p.axialStress) / 3 / stress, 1, 0.03);
+	EXPECT_LT(p.unbalanced, 1e-3);
+}
+
 TEST(StressedPacking, refusesBadInput)
 {
 	const auto with = [](auto change) {
@@ -298,6 +326,7 @@ TEST(StressedPacking, refusesBadInput)
 	EXPECT_COMPLAINT(with([](auto& s) { s.law.modulus = NAN; }), "CylinderPacking.young = nan");
 	EXPECT_COMPLAINT(with([](auto& s) { s.law.stiffnessRatio = 0.5; }), "CylinderPacking.stiffnessRatio = 0.5");
 	EXPECT_COMPLAINT(with([](auto& s) { s.law.friction = -0.1; }), "CylinderPacking.friction = -0.1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.law.rollingFriction = -0.1; }), "CylinderPacking.rollingFriction = -0.1");
 	EXPECT_COMPLAINT(with([](auto& s) { s.law.damping = 1; }), "CylinderPacking.damping = 1");
 	EXPECT_COMPLAINT(with([](auto& s) { s.porosityTolerance = 0.5; }), "CylinderPacking.porosityTolerance = 0.5");
 }
