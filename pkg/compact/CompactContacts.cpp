@@ -97,8 +97,14 @@ void CompactLoop::putContact(Body::id_t a, Body::id_t b, ContactMemory memory, u
 	} else if (i >= 0 && j >= 0) {
 		const auto law = flat.lawOf(i, j);
 		memory.law = {law.kn, law.ks, law.friction, law.kr, law.rollingArm, memory.law.tensileStrength, memory.law.shearStrength};
-		// a frictionless contact with the membrane has nothing to remember
-		known = flat.contacts.restore(i, j, memory, bits) || hexmembrane::normalOnly(law);
+		known = flat.contacts.restore(i, j, memory, bits);
+		if (!known && hexmembrane::normalOnly(law)) { // with the membrane: has nothing to remember, and no place to do so
+			if (bits & hexmembrane::contactBonded)
+				throw std::runtime_error(
+				        "CompactLoop: bodies " + std::to_string(a) + " and " + std::to_string(b) +
+				        " are bonded without friction, grain and membrane; fix: bonds among grains only, or the reference tier");
+			known = true;
+		}
 	}
 	if (!known && (bits & hexmembrane::contactBonded))
 		throw std::runtime_error("CompactLoop: the bond of bodies " + std::to_string(a) + " and " + std::to_string(b) +

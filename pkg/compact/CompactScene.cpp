@@ -245,13 +245,16 @@ void CompactLoop::takeOutsideForces()
 		throw std::runtime_error("CompactLoop: the forces of the step before are still there; fix: put ForceResetter() first in O.engines");
 	scene->forces.sync();
 	flat.outside.clear();
-	vector<hexmembrane::Load> found(flat.spheres());
+	const int count = flat.spheres();
+	const auto load = [&](int i) { return hexmembrane::Load{scene->forces.getForce(flat.id[i]), scene->forces.getTorque(flat.id[i])}; };
 	bool any = false;
-	for (int i = 0; i < flat.spheres(); ++i) {
-		found[i] = {scene->forces.getForce(flat.id[i]), scene->forces.getTorque(flat.id[i])};
-		any |= found[i].force != Vector3r::Zero() || found[i].torque != Vector3r::Zero();
+#pragma omp parallel for schedule(static) num_threads(threads) reduction(|| : any)
+	for (int i = 0; i < count; ++i) {
+		const hexmembrane::Load found = load(i);
+		any = any || found.force != Vector3r::Zero() || found.torque != Vector3r::Zero();
 	}
-	if (any) flat.outside = std::move(found);
+	if (!any) return;
+	for (int i = 0; i < count; ++i) flat.outside.push_back(load(i));
 }
 
 void CompactLoop::giveScene()
@@ -260,6 +263,8 @@ void CompactLoop::giveScene()
 	const bool rotating = collectedMembrane && rotatingMembrane();
 	const auto& bodies = *scene->bodies;
 	if (collectedMembrane) rows.giveVelocities(flat.motions.data() + grains);
+	// each thread adds to forces of its own, and each body is one thread's: the sums are the same for any number of them
+#pragma omp parallel for schedule(static) num_threads(threads)
 	for (int i = 0; i < count; ++i) {
 		prefetchAhead(bodies, flat.id, i);
 		const Body* b = livingBody(bodies, flat.id[i]);

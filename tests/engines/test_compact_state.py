@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from compactScene import build, forces, referenceEngines, run, state
 
+GRAINS = 150  # of compactScene.build
 MOVING = dict(spin=0.05, velocity=0.05)
 
 
@@ -68,6 +69,59 @@ def test_contactsMoveBetweenTiers(O):
 	run(50)
 	moved = np.abs(whole[:, 3:6]).max()
 	assert np.abs(state() - whole)[:, 3:6].max() < 1e-7 * moved
+
+
+def test_contactBondsMoveBetweenTiersAndBreakAlike(O):
+	"""Bonds of PFC's linear contact bond, made in the reference tier, of strengths that some contacts exceed."""
+
+	def bondAll():
+		count = 0
+		for i in O.interactions:
+			if i.isReal and max(i.id1, i.id2) < GRAINS:
+				strength = 0.02 * 3 ** ((i.id1 + i.id2) % 8)
+				i.phys.bond(strength, strength)
+				count += 1
+		return count
+
+	def bonded():
+		return {tuple(sorted((i.id1, i.id2))) for i in O.interactions if i.isReal and i.phys.bonded}
+
+	made = build("reference", **MOVING)
+	run(20)
+	begun = bondAll()
+	run(40)
+	whole, left = state(), bonded()
+	assert 0.1 * begun < len(left) < 0.9 * begun
+	O.reset()
+	made = build("reference", **MOVING)
+	run(20)
+	bondAll()
+	import yade
+
+	loop = yade.CompactLoop(engines=list(made.values()), damping=0.2, substeps=10)
+	O.engines = [yade.ForceResetter(), loop]
+	run(20)
+	O.saveTmp("bonds")
+	O.reset()
+	O.loadTmp("bonds")
+	run(20)
+	moved = np.abs(whole[:, 3:6]).max()
+	assert np.abs(state() - whole)[:, 3:6].max() < 1e-7 * moved
+	O.engines[1].exportContacts()
+	assert bonded() == left
+
+
+def test_bondsWithASmoothMembraneAreRefused(O):
+	made = build("reference", **MOVING)
+	run(20)
+	contact = next(i for i in O.interactions if i.isReal and i.phys.spheres and max(i.id1, i.id2) >= GRAINS)
+	contact.phys.bond(1, 1)
+	import yade
+
+	O.engines = [yade.ForceResetter(), yade.CompactLoop(engines=list(made.values()), damping=0.2)]
+	with pytest.raises(RuntimeError, match="bonded without friction, grain and membrane; fix: bonds among grains only"):
+		run(1)
+	assert contact.isReal and contact.phys.bonded, "nothing is lost"
 
 
 def test_exportedContactsAreThoseOfTheReference(O):

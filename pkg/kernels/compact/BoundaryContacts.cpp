@@ -39,10 +39,12 @@ void BoundaryContacts::sweep(int from, int to, const FlatBoundary& boundary, con
 double BoundaryContacts::stiffness(const Vec3& along) const
 {
 	double sum = 0;
-	forEachTouching([&](int, const ContactMemory& memory, unsigned char) {
-		const double cosine = memory.normal.dot(along), square = cosine * cosine;
-		sum += memory.law.kn * square + memory.law.ks * (1 - square);
-	});
+	for (std::size_t c = 0; c < spheres.size(); ++c) {
+		if (!store.bits[c]) continue;
+		const PackedContact& contact = store.contacts[c];
+		const double cosine = contact.normal.dot(along), square = cosine * cosine;
+		sum += contact.kn * square + contact.ks * (1 - square);
+	}
 	return sum;
 }
 

@@ -53,9 +53,9 @@ HEXMEMBRANE_INLINE bool pick(const PairSweep& s, int p, int end, Touching& found
 	unsigned char any = 0;
 	for (; p < end; ++p) {
 		const int i = first[p], j = second[p];
-		// what the next two passes need of it; the sphere before it in the row has been fetched before
+		// what later passes need of the second sphere; the first one was there for the pair before
 		__builtin_prefetch(s.motions + j);
-		__builtin_prefetch(s.loads + j, 1);
+		__builtin_prefetch(&loadOf(s, j), 1);
 		const Lanes a = load4(places[i].centre.data()), b = load4(places[j].centre.data());
 		const Lanes branch = __builtin_shufflevector(b - a, b + a, 0, 1, 2, 7);
 		store4(found.branch[count], branch);
