@@ -21,9 +21,9 @@ def write(path, header, rows):
 	os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
 	with open(path + ".part", "w", newline="") as file:
 		writer = csv.writer(file)
-		threads = os.environ.get("OMP_NUM_THREADS")
-		writer.writerow(["# %s, %s, %d processors, OMP_NUM_THREADS %s" % (time.strftime("%Y-%m-%d"), processor(), os.cpu_count(), threads)])
+		machine = "%s, %s, %d processors, OMP_NUM_THREADS %s" % (time.strftime("%Y-%m-%d"), processor(), os.cpu_count(), os.environ.get("OMP_NUM_THREADS"))
+		writer.writerow(["# " + machine])
 		writer.writerow(header)
 		writer.writerows(rows)
 	os.replace(path + ".part", path)
-	print("written: " + path)
+	print("machine: %s\nwritten: %s" % (machine, path))

@@ -183,6 +183,14 @@ TEST(FlatAssembly, materialsActAtOnce)
 	flat.contacts.forEachTouching([](int, int, const ContactMemory& memory, unsigned char) { EXPECT_EQ(memory.shear.norm(), 0); });
 }
 
+TEST(FlatAssembly, tooManyMaterialsAreRefused)
+{
+	FlatAssembly flat = randomScene(50, 0);
+	flat.makeLists();
+	EXPECT_COMPLAINT(flat.setMaterials(std::vector<ContactMaterial>(256, smoothMaterial())), "CompactLoop.materials = 256");
+	EXPECT_EQ(flat.materialOf(0).friction, sand().friction) << "nothing has changed";
+}
+
 TEST(FlatAssembly, lostGrainIsNamed)
 {
 	FlatAssembly flat = randomScene(50, 0);

@@ -49,7 +49,7 @@ void FlatAssembly::setMaterials(const std::vector<ContactMaterial>& table)
 	if (table == materials) return;
 	const bool first = materials.empty();
 	if (table.size() > 255)
-		reject("CompactLoop materials", double(table.size()), "too many", "255 materials at most: bodies with the same parameters can share one");
+		reject("CompactLoop.materials", double(table.size()), "too many", "255 materials at most: bodies with the same parameters can share one");
 	materials = table;
 	frictions.clear();
 	for (const ContactMaterial& a : table)
