@@ -19,7 +19,7 @@ public:
 	using LawOfPair = std::function<LawOfKind(int, int)>;
 
 	/// Takes over a new list. Memories of contacts that touch in the old list go to their pairs in the new one (the others are dropped: a touching pair is
-	/// always in a new list); `law` makes the parameters of all others.
+	/// always in a new list); `law` makes the parameters of all pairs.
 	/// \param frictions by kind \param newIndex where each sphere of the old numbering stands in the new one
 	void rebuild(NearPairs found, const std::vector<int>& newIndex, const std::vector<Frictions>& frictions, const LawOfPair& law);
 

@@ -35,11 +35,6 @@ void NormalList::rebuild(const std::vector<Pair>& found, int grains, int particl
 			other[p] = other[next[i] - 1];
 			kn[p] = 0;
 		}
-	renewStiffness(stiffness);
-}
-
-void NormalList::renewStiffness(const std::function<double(int, int)>& stiffness)
-{
 	for (std::size_t i = 0; i < length.size(); ++i)
 		for (int p = start[i]; p < start[i] + length[i]; ++p) kn[p] = stiffness(int(i), other[p]);
 }

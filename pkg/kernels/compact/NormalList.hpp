@@ -20,7 +20,6 @@ public:
 	/// Takes over the pairs, sorted by particle and then by grain.
 	/// \param grains number of grains; the particles' indices follow them \param particles number of particles
 	void rebuild(const std::vector<Pair>& found, int grains, int particles, const std::function<double(int, int)>& stiffness);
-	void renewStiffness(const std::function<double(int, int)>& stiffness);
 
 	/// Adds what the particles do to the grains from .. to - 1 to `loads`.
 	void sweep(int from, int to, const std::vector<Place>& places, std::vector<Load>& loads);
