@@ -3,8 +3,8 @@
 
 #include <core/Aabb.hpp>
 #include <core/Scene.hpp>
-#include <kernels/Check.hpp>
-#include <kernels/CylinderContact.hpp>
+#include "kernels/base/Check.hpp"
+#include "kernels/boundary/CylinderContact.hpp"
 
 namespace yade {
 

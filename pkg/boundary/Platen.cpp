@@ -3,7 +3,7 @@
 
 #include <core/Aabb.hpp>
 #include <core/Scene.hpp>
-#include <kernels/Check.hpp>
+#include "kernels/base/Check.hpp"
 
 #include <stdexcept>
 

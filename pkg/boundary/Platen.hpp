@@ -3,7 +3,7 @@
 
 #include <core/Dispatching.hpp>
 #include <core/Shape.hpp>
-#include <kernels/PlatenContact.hpp>
+#include "kernels/boundary/PlatenContact.hpp"
 #include <pkg/common/Sphere.hpp>
 #include <pkg/dem/ScGeom.hpp>
 

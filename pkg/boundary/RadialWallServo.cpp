@@ -5,8 +5,8 @@
 
 #include <core/Interaction.hpp>
 #include <core/Scene.hpp>
-#include <kernels/Check.hpp>
-#include <kernels/PlatenServo.hpp>
+#include "kernels/base/Check.hpp"
+#include "kernels/boundary/PlatenServo.hpp"
 #include <pkg/common/NormShearPhys.hpp>
 
 namespace yade {

@@ -3,7 +3,7 @@
 
 #include "contact/LinearContact.hpp"
 #include "kernels/compact/CriticalStep.hpp"
-#include "membrane/Scatter.hpp"
+#include "membrane/GatherBodies.hpp"
 
 #include <core/Scene.hpp>
 #include <pkg/dem/ScGeom.hpp>

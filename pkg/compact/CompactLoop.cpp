@@ -1,8 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "CompactLoop.hpp"
 
-#include "kernels/Check.hpp"
-#include "kernels/RadialForce.hpp"
+#include "kernels/base/Check.hpp"
+#include "kernels/membrane/RadialForce.hpp"
 
 #include <core/Scene.hpp>
 
@@ -141,7 +141,7 @@ void CompactLoop::step(bool last)
 
 void CompactLoop::membraneForces()
 {
-	const hexmembrane::RingField& x = bonds->bondKernel().position;
+	const hexmembrane::PaddedRings& x = bonds->bondKernel().position;
 	bonds->computeForces();
 	terms.clear();
 	if (pressure) {
@@ -165,7 +165,7 @@ void CompactLoop::membraneForces()
 Real CompactLoop::transmittedByGroup(int group) const
 {
 	const auto tube = collectedMembrane->stencil();
-	const hexmembrane::RingField& x = bonds->bondKernel().position;
+	const hexmembrane::PaddedRings& x = bonds->bondKernel().position;
 	Real force = 0, area = 0;
 	for (int k = 0; k < tube.rings; ++k) {
 		if (collectedMembrane->groupOfRing(k) != group) continue;
@@ -211,8 +211,8 @@ void CompactLoop::moveAll()
 		if (oRings) std::tie(rows.below, rows.above) = oRings->velocities();
 		hexmembrane::BondForce& kernel = bonds->bondKernel();
 		const int grains = flat.grains();
-		const hexmembrane::MembraneRows::Contacts contacts{flat.onParticle, flat.loads.data() + grains,  flat.loadedParticles(),
-		                                                   grains,          flat.places.data() + grains, flat.motions.data() + grains};
+		const hexmembrane::MembraneMotion::Contacts contacts{flat.onParticle, flat.loads.data() + grains,  flat.loadedParticles(),
+		                                                     grains,          flat.places.data() + grains, flat.motions.data() + grains};
 		int lost = rows.move(dt, damping, 0.5 * flat.skin(), kernel.force, terms, contacts, kernel.position, energies, threads);
 		if (rotatingMembrane()) {
 			for (int k = 0; k < collectedMembrane->rings; ++k)

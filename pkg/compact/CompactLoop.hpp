@@ -4,8 +4,8 @@
 #include "boundary/PlatenDrive.hpp"
 #include "boundary/RadialWallServo.hpp"
 #include "contact/LinearContact.hpp"
-#include "kernels/compact/FlatAssembly.hpp"
-#include "kernels/compact/MembraneRows.hpp"
+#include "kernels/compact/SphereAssembly.hpp"
+#include "kernels/compact/MembraneMotion.hpp"
 #include "membrane/MembraneBonds.hpp"
 #include "membrane/MembraneORings.hpp"
 #include "membrane/MembranePressure.hpp"
@@ -42,10 +42,10 @@ private:
 	void takeScene();
 	void collect();
 	void collectBoundary(const Body& body, hexmembrane::FlatBoundary::Kind kind);
-	hexmembrane::FlatAssembly::Sphere sphereOf(const Body& body, bool ofMembrane);
+	hexmembrane::SphereAssembly::Sphere sphereOf(const Body& body, bool ofMembrane);
 	int materialIndex(const Body& body);
 	void checkMasks() const;
-	bool inSavedOrder(vector<hexmembrane::FlatAssembly::Sphere>& spheres, int grains) const;
+	bool inSavedOrder(vector<hexmembrane::SphereAssembly::Sphere>& spheres, int grains) const;
 	bool rotatingMembrane() const { return bonds->bondKernel().velocity.fits(collectedMembrane->perRing, collectedMembrane->rings); }
 	bool refreshBodies();
 	void refreshBoundary(size_t b);
@@ -71,9 +71,9 @@ private:
 	Instant lastInstant() const;
 
 	// Caches: made from the scene and the saved attributes.
-	hexmembrane::FlatAssembly flat;
-	hexmembrane::MembraneRows rows;
-	vector<hexmembrane::MembraneRows::Term> terms;
+	hexmembrane::SphereAssembly flat;
+	hexmembrane::MembraneMotion rows;
+	vector<hexmembrane::MembraneMotion::Term> terms;
 	vector<Body::id_t> boundaryIds;
 	vector<int> sphereAt; //!< index of each body among the spheres, -1: none; of use while contacts are put in
 	vector<const LinearMat*> materials;

@@ -2,16 +2,16 @@
 #include "CompactLoop.hpp"
 
 #include "contact/LinearContact.hpp"
-#include "kernels/Check.hpp"
-#include "membrane/Scatter.hpp"
+#include "kernels/base/Check.hpp"
+#include "membrane/GatherBodies.hpp"
 
 #include <core/Scene.hpp>
 #include <pkg/common/Sphere.hpp>
 
 namespace yade {
 
-using hexmembrane::FlatAssembly;
 using hexmembrane::FlatBoundary;
+using hexmembrane::SphereAssembly;
 
 namespace {
 
@@ -33,7 +33,7 @@ int CompactLoop::materialIndex(const Body& body)
 	return static_cast<int>(materials.size()) - 1;
 }
 
-FlatAssembly::Sphere CompactLoop::sphereOf(const Body& body, bool ofMembrane)
+SphereAssembly::Sphere CompactLoop::sphereOf(const Body& body, bool ofMembrane)
 {
 	const State& state = *body.state;
 	const bool fixed = state.blockedDOFs == State::DOF_ALL;
@@ -78,7 +78,7 @@ void CompactLoop::collect()
 	checkMasks();
 	const HexMembrane* membrane = bonds ? bonds->membrane.get() : nullptr;
 	const std::set<Body::id_t> ofMembrane = membrane ? std::set<Body::id_t>(membrane->ids.begin(), membrane->ids.end()) : std::set<Body::id_t>();
-	vector<FlatAssembly::Sphere> spheres;
+	vector<SphereAssembly::Sphere> spheres;
 	materials.clear();
 	boundaryIds.clear();
 	flat.boundaries.clear();
@@ -115,7 +115,7 @@ void CompactLoop::collect()
 	} else
 		flat.setMembraneContacts({});
 	if (membrane) {
-		rows = hexmembrane::MembraneRows(membrane->stencil(), membrane->oRingRows);
+		rows = hexmembrane::MembraneMotion(membrane->stencil(), membrane->oRingRows);
 		rows.mass = spheres.back().mass;
 		for (int i = grains; i < static_cast<int>(spheres.size()); ++i)
 			if (!(spheres[i].mass == rows.mass)) refuse(spheres[i].id, "of the membrane has another mass than the rest", "give all the same");
@@ -133,13 +133,13 @@ void CompactLoop::collect()
 }
 
 // A state that was loaded goes on in the order of the arrays that it was saved from: sums over contacts keep their bits.
-bool CompactLoop::inSavedOrder(vector<FlatAssembly::Sphere>& spheres, int grains) const
+bool CompactLoop::inSavedOrder(vector<SphereAssembly::Sphere>& spheres, int grains) const
 {
 	if (static_cast<int>(order.size()) != grains || listedCentres.size() != spheres.size() || listedBoundaryRadii.size() != boundaryIds.size())
 		return false;
 	std::map<int, int> at;
 	for (int i = 0; i < grains; ++i) at[spheres[i].id] = i;
-	vector<FlatAssembly::Sphere> sorted(spheres);
+	vector<SphereAssembly::Sphere> sorted(spheres);
 	for (int i = 0; i < grains; ++i) {
 		const auto found = at.find(order[i]);
 		if (found == at.end()) return false;

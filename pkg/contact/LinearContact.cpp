@@ -3,7 +3,7 @@
 
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
-#include <kernels/Check.hpp>
+#include "kernels/base/Check.hpp"
 #include <pkg/common/Sphere.hpp>
 
 #include <boost/make_shared.hpp>

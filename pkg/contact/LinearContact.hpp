@@ -2,7 +2,7 @@
 #pragma once
 
 #include <core/Dispatching.hpp>
-#include <kernels/ContactMaterial.hpp>
+#include "kernels/contact/ContactMaterial.hpp"
 #include <pkg/common/ElastMat.hpp>
 #include <pkg/dem/FrictPhys.hpp>
 #include <pkg/dem/ScGeom.hpp>

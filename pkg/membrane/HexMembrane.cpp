@@ -1,12 +1,12 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "HexMembrane.hpp"
 
-#include "Scatter.hpp"
-#include "kernels/Check.hpp"
-#include "kernels/MembraneTension.hpp"
-#include "kernels/PressureForce.hpp"
-#include "kernels/RadialForce.hpp"
-#include "kernels/SurfaceMeasure.hpp"
+#include "GatherBodies.hpp"
+#include "kernels/base/Check.hpp"
+#include "kernels/membrane/MembraneTension.hpp"
+#include "kernels/membrane/PressureForce.hpp"
+#include "kernels/membrane/RadialForce.hpp"
+#include "kernels/membrane/SurfaceMeasure.hpp"
 
 #include <core/InteractionContainer.hpp>
 #include <pkg/common/NormShearPhys.hpp>
@@ -134,10 +134,10 @@ void HexMembrane::gather(const Scene& scene, const string& who, vector<Vector3r>
 	if (missing >= 0) body(scene, missing, who); // throws
 }
 
-void HexMembrane::gather(const Scene& scene, const string& who, hexmembrane::RingField& x) const
+void HexMembrane::gather(const Scene& scene, const string& who, hexmembrane::PaddedRings& x) const
 {
 	requireGenerated(who);
-	if (!x.fits(perRing, rings)) x = hexmembrane::RingField(perRing, rings);
+	if (!x.fits(perRing, rings)) x = hexmembrane::PaddedRings(perRing, rings);
 	int missing = -1;
 #pragma omp parallel for schedule(static) reduction(max : missing)
 	for (int k = 0; k < rings; ++k) {

@@ -6,8 +6,8 @@
 #include <core/Scene.hpp>
 #include <lib/serialization/Serializable.hpp>
 
-#include "kernels/HexLattice.hpp"
-#include "kernels/RingField.hpp"
+#include "kernels/membrane/HexLattice.hpp"
+#include "kernels/membrane/PaddedRings.hpp"
 
 namespace yade {
 
@@ -27,7 +27,7 @@ public:
 	//! Present centres of all particles. Throws when a body is gone; `who` asks.
 	void gather(const Scene& scene, const string& who, vector<Vector3r>& positions) const;
 	//! The same as wrapped rows; the field is made when it does not fit.
-	void gather(const Scene& scene, const string& who, hexmembrane::RingField& positions) const;
+	void gather(const Scene& scene, const string& who, hexmembrane::PaddedRings& positions) const;
 	//! A body of the membrane. Throws when it is gone.
 	const shared_ptr<Body>& body(const Scene& scene, int index, const string& who) const;
 	//! All triangles as local indices.

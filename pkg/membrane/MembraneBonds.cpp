@@ -1,10 +1,10 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneBonds.hpp"
 
-#include "Scatter.hpp"
-#include "kernels/Check.hpp"
-#include "kernels/LatticeConstants.hpp"
-#include "kernels/MembraneTension.hpp"
+#include "GatherBodies.hpp"
+#include "kernels/base/Check.hpp"
+#include "kernels/membrane/LatticeConstants.hpp"
+#include "kernels/membrane/MembraneTension.hpp"
 
 namespace yade {
 

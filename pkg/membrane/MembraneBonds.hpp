@@ -3,8 +3,8 @@
 
 #include "HexMembrane.hpp"
 
-#include "kernels/BondForce.hpp"
-#include "kernels/ContactLaw.hpp"
+#include "kernels/membrane/BondForce.hpp"
+#include "kernels/contact/ContactLaw.hpp"
 
 #include <core/GlobalEngine.hpp>
 

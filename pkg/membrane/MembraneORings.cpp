@@ -1,9 +1,9 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneORings.hpp"
 
-#include "Scatter.hpp"
-#include "kernels/Check.hpp"
-#include "kernels/WorkMeter.hpp"
+#include "GatherBodies.hpp"
+#include "kernels/base/Check.hpp"
+#include "kernels/base/TrapezoidalWork.hpp"
 
 #include <pkg/dem/NewtonIntegrator.hpp>
 

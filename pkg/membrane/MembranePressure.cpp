@@ -1,9 +1,9 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembranePressure.hpp"
 
-#include "Scatter.hpp"
-#include "kernels/Check.hpp"
-#include "kernels/FactorLoop.hpp"
+#include "GatherBodies.hpp"
+#include "kernels/base/Check.hpp"
+#include "kernels/base/IntegralController.hpp"
 
 namespace yade {
 

@@ -3,8 +3,8 @@
 
 #include "HexMembrane.hpp"
 
-#include "kernels/PressureForce.hpp"
-#include "kernels/TubePressure.hpp"
+#include "kernels/membrane/PressureForce.hpp"
+#include "kernels/membrane/TubePressure.hpp"
 
 #include <core/GlobalEngine.hpp>
 
@@ -43,7 +43,7 @@ private:
 
 	// Caches, rebuilt from the attributes
 	std::unique_ptr<hexmembrane::TubePressure> tube; //!< of a membrane
-	hexmembrane::RingField rows;                     //!< its positions
+	hexmembrane::PaddedRings rows;                   //!< its positions
 	hexmembrane::PressureForce mesh;                 //!< of a mesh of one's own
 	vector<Body::id_t> vertexIds;                    //!< bodies that are the vertices of the mesh
 	vector<int> loaded;                              //!< vertices that receive their force

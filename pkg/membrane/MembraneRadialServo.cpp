@@ -1,11 +1,11 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneRadialServo.hpp"
 
-#include "Scatter.hpp"
-#include "kernels/Check.hpp"
-#include "kernels/FactorLoop.hpp"
-#include "kernels/RadialForce.hpp"
-#include "kernels/WorkMeter.hpp"
+#include "GatherBodies.hpp"
+#include "kernels/base/Check.hpp"
+#include "kernels/base/IntegralController.hpp"
+#include "kernels/membrane/RadialForce.hpp"
+#include "kernels/base/TrapezoidalWork.hpp"
 
 namespace yade {
 
@@ -36,12 +36,12 @@ void MembraneRadialServo::correct(Real measured)
 	factor = hexmembrane::correctedFactor(factor, gain, pressure, measured, 0, maxFactor, saturated);
 }
 
-void MembraneRadialServo::computeForces(const hexmembrane::RingField& x, const std::function<Real()>& transmittedNow)
+void MembraneRadialServo::computeForces(const hexmembrane::PaddedRings& x, const std::function<Real()>& transmittedNow)
 {
 	if (gain > 0 && scene->iter % iterPeriod == 0) correct(transmittedNow());
 	const auto rule = hexmembrane::areaRuleFromName(areaRule);
 	const auto tube = membrane->stencil();
-	if (!force.fits(tube.perRing, tube.rings)) force = hexmembrane::RingField(tube.perRing, tube.rings);
+	if (!force.fits(tube.perRing, tube.rings)) force = hexmembrane::PaddedRings(tube.perRing, tube.rings);
 	area = 0;
 	for (int k : rows) {
 		const Real a = hexmembrane::particleArea(tube, x, k, membrane->sphereRadius, rule);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "HexMembrane.hpp"
-#include "kernels/RingField.hpp"
+#include "kernels/membrane/PaddedRings.hpp"
 
 #include <core/GlobalEngine.hpp>
 
@@ -19,17 +19,17 @@ public:
 	//! \throws std::invalid_argument, std::runtime_error for what is set wrong
 	void prepare();
 	//! Corrects the factor when it is due, by the mean pressure that group 2 transmits; then `force` on its rings at these positions.
-	void computeForces(const hexmembrane::RingField& positions, const std::function<Real()>& transmittedNow);
+	void computeForces(const hexmembrane::PaddedRings& positions, const std::function<Real()>& transmittedNow);
 	//! Enters `work` into the scene's energies, once an iteration.
 	void bookWork();
 
-	vector<int> rows;             //!< rings of group 2, after prepare()
-	hexmembrane::RingField force; //!< on them, after computeForces()
+	vector<int> rows;               //!< rings of group 2, after prepare()
+	hexmembrane::PaddedRings force; //!< on them, after computeForces()
 
 private:
 	void correct(Real measured);
 
-	hexmembrane::RingField positions; //!< all particles
+	hexmembrane::PaddedRings positions; //!< all particles
 	int energyIndex = -1;
 
 	// clang-format off

@@ -1,8 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "CylinderPacking.hpp"
 
-#include "kernels/Check.hpp"
-#include "kernels/StressedPacking.hpp"
+#include "kernels/base/Check.hpp"
+#include "kernels/packing/StressedPacking.hpp"
 
 #include <stdexcept>
 

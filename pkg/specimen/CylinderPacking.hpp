@@ -5,8 +5,8 @@
 
 namespace yade {
 
-/*! A dense random packing of given radii in a vertical cylinder; the arithmetic is in kernels/SpherePacking.hpp and, under stress, in
- * kernels/StressedPacking.hpp.
+/*! A dense random packing of given radii in a vertical cylinder; the arithmetic is in kernels/packing/SpherePacking.hpp and, under stress, in
+ * kernels/packing/StressedPacking.hpp.
  *
  * Results are kept apart from what was asked: they are those of the last generate(), they are saved, and reading them before is an error. */
 class CylinderPacking : public Serializable {

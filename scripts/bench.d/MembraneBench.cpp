@@ -1,10 +1,10 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 // Cost of the membrane kernels, in ns a membrane particle and step (counter perParticle), fast against reference.
-#include "kernels/BondForce.hpp"
-#include "kernels/HexLattice.hpp"
-#include "kernels/PressureForce.hpp"
-#include "kernels/reference/BondForceReference.hpp"
-#include "kernels/reference/PressureForceReference.hpp"
+#include "kernels/membrane/BondForce.hpp"
+#include "kernels/membrane/HexLattice.hpp"
+#include "kernels/membrane/PressureForce.hpp"
+#include "tests/kernels/oracle/BondForceReference.hpp"
+#include "tests/kernels/oracle/PressureForceReference.hpp"
 
 #include <benchmark/benchmark.h>
 

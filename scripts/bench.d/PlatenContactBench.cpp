@@ -1,6 +1,6 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 // Cost of a contact search between a platen and a sphere (time a call), by the part of the platen that is near.
-#include "kernels/PlatenContact.hpp"
+#include "kernels/boundary/PlatenContact.hpp"
 
 #include <benchmark/benchmark.h>
 

@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "Support.hpp"
-#include "kernels/BondForce.hpp"
-#include "kernels/reference/BondForceReference.hpp"
+#include "kernels/membrane/BondForce.hpp"
+#include "tests/kernels/oracle/BondForceReference.hpp"
 
 #include <omp.h>
 
@@ -17,7 +17,7 @@ BondLaw law(double kn, double ks = 0, double tensile = inf, double shear = inf, 
 	return {kn, ks, tensile, shear, friction, tensionOnly};
 }
 
-void load(RingField& field, const HexStencil& s, const std::vector<Vec3>& values)
+void load(PaddedRings& field, const HexStencil& s, const std::vector<Vec3>& values)
 {
 	for (int k = 0; k < s.rings; ++k) {
 		for (int i = 0; i < s.perRing; ++i) field.set(k, i, values[s.at(k, i)]);
@@ -25,7 +25,7 @@ void load(RingField& field, const HexStencil& s, const std::vector<Vec3>& values
 	}
 }
 
-std::vector<Vec3> unload(const RingField& field, const HexStencil& s)
+std::vector<Vec3> unload(const PaddedRings& field, const HexStencil& s)
 {
 	std::vector<Vec3> values;
 	for (int k = 0; k < s.rings; ++k)

@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "Support.hpp"
-#include "kernels/CellGrid.hpp"
-#include "kernels/Random.hpp"
+#include "kernels/base/CellGrid.hpp"
+#include "kernels/base/Random.hpp"
 
 #include <algorithm>
 #include <set>

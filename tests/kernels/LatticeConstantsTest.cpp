@@ -1,6 +1,6 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "Support.hpp"
-#include "kernels/LatticeConstants.hpp"
+#include "kernels/membrane/LatticeConstants.hpp"
 
 using namespace hexmembrane;
 

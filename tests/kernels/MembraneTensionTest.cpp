@@ -1,6 +1,6 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "Support.hpp"
-#include "kernels/MembraneTension.hpp"
+#include "kernels/membrane/MembraneTension.hpp"
 
 using namespace hexmembrane;
 
@@ -42,7 +42,7 @@ struct Strained {
 	}
 
 	template <typename Value>
-	void place(RingField& field, const Value& value)
+	void place(PaddedRings& field, const Value& value)
 	{
 		for (int k = 0; k < tube.rings; ++k) {
 			for (int i = 0; i < tube.perRing; ++i) field.set(k, i, value(k * tube.perRing + i));

@@ -1,5 +1,5 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
-#include "kernels/PlatenServo.hpp"
+#include "kernels/boundary/PlatenServo.hpp"
 
 #include <gtest/gtest.h>
 

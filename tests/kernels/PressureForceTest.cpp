@@ -1,8 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "Support.hpp"
-#include "kernels/PressureForce.hpp"
-#include "kernels/SurfaceMeasure.hpp"
-#include "kernels/reference/PressureForceReference.hpp"
+#include "kernels/membrane/PressureForce.hpp"
+#include "kernels/membrane/SurfaceMeasure.hpp"
+#include "tests/kernels/oracle/PressureForceReference.hpp"
 
 #include <omp.h>
 

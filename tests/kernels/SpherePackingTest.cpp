@@ -1,8 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "Support.hpp"
-#include "kernels/Random.hpp"
-#include "kernels/SpherePacking.hpp"
-#include "kernels/SphereRelaxation.hpp"
+#include "kernels/base/Random.hpp"
+#include "kernels/packing/SpherePacking.hpp"
+#include "kernels/packing/SphereRelaxation.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,8 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "Support.hpp"
-#include "kernels/GrainAssembly.hpp"
-#include "kernels/Random.hpp"
-#include "kernels/StressedPacking.hpp"
+#include "kernels/packing/GrainAssembly.hpp"
+#include "kernels/base/Random.hpp"
+#include "kernels/packing/StressedPacking.hpp"
 
 #include <map>
 

@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "kernels/HexLattice.hpp"
+#include "kernels/membrane/HexLattice.hpp"
 
 #include <gtest/gtest.h>
 

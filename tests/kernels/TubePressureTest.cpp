@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "Support.hpp"
-#include "kernels/PressureForce.hpp"
-#include "kernels/TubePressure.hpp"
+#include "kernels/membrane/PressureForce.hpp"
+#include "kernels/membrane/TubePressure.hpp"
 
 #include <omp.h>
 
@@ -11,9 +11,9 @@ namespace {
 
 constexpr double pressure = 1e5;
 
-RingField field(const HexLattice& tube)
+PaddedRings field(const HexLattice& tube)
 {
-	RingField x(tube.perRing, tube.rings);
+	PaddedRings x(tube.perRing, tube.rings);
 	for (int k = 0; k < tube.rings; ++k) {
 		for (int i = 0; i < tube.perRing; ++i) x.set(k, i, tube.positions[k * tube.perRing + i]);
 		x.wrap(k);

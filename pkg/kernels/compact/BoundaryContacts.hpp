@@ -1,9 +1,9 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "ContactStore.hpp"
-#include "kernels/CylinderContact.hpp"
-#include "kernels/PlatenContact.hpp"
+#include "kernels/compact/ContactStore.hpp"
+#include "kernels/boundary/CylinderContact.hpp"
+#include "kernels/boundary/PlatenContact.hpp"
 
 #include <functional>
 #include <vector>
@@ -65,7 +65,7 @@ class BoundaryContacts {
 public:
 	using LawOfSphere = std::function<LawOfKind(int)>;
 
-	/// New list of spheres that are near; memories of the old one move over, see ContactList::rebuild.
+	/// New list of spheres that are near; memories of the old one move over, see PairContacts::rebuild.
 	void rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<Frictions>& frictions, const LawOfSphere& law);
 
 	/// One step of the spheres from .. to - 1: their loads are added, what the boundary receives is added to `received`.

@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
-#include "BoundarySweep.hpp"
+#include "kernels/compact/BoundarySweep.hpp"
 
-#include "FourContacts.hpp"
+#include "kernels/compact/FourContacts.hpp"
 
 #include <algorithm>
 

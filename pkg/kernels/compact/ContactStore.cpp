@@ -1,5 +1,5 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
-#include "ContactStore.hpp"
+#include "kernels/compact/ContactStore.hpp"
 
 namespace hexmembrane {
 

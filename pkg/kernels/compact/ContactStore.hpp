@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "Flat.hpp"
+#include "kernels/compact/SphereArrays.hpp"
 
 #include <array>
 #include <cstdint>

@@ -1,14 +1,14 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
-#include "CriticalStep.hpp"
+#include "kernels/compact/CriticalStep.hpp"
 
-#include "kernels/Random.hpp"
+#include "kernels/base/Random.hpp"
 
 #include <cmath>
 #include <limits>
 
 namespace hexmembrane {
 
-CriticalStep::CriticalStep(const FlatAssembly& flat) : grains(flat.grains())
+CriticalStep::CriticalStep(const SphereAssembly& flat) : grains(flat.grains())
 {
 	for (int i = 0; i < flat.spheres(); ++i) {
 		const bool moves = !flat.fixed[i];

@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "FlatAssembly.hpp"
+#include "kernels/compact/SphereAssembly.hpp"
 
 namespace hexmembrane {
 
@@ -10,7 +10,7 @@ namespace hexmembrane {
 /// start, matrix-free; K is symmetric and positive, so the iterates rise to it from below. Geometric stiffness (forces times rotations) is left out.
 class CriticalStep {
 public:
-	explicit CriticalStep(const FlatAssembly& flat);
+	explicit CriticalStep(const SphereAssembly& flat);
 	/// Adds a bond of two membrane particles (local indices), `branch` from the first to the second; ks acts at its middle.
 	void addBond(int first, int second, const Vec3& branch, double kn, double ks);
 	/// \return the step (s), infinite without springs \param tolerance relative change of the eigenvalue at which to stop

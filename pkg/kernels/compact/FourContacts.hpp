@@ -1,8 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "ContactStore.hpp"
-#include "kernels/Lanes.hpp"
+#include "kernels/compact/ContactStore.hpp"
+#include "kernels/base/Lanes.hpp"
 
 #include <cstddef>
 

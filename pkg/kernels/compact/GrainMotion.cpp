@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
-#include "GrainMotion.hpp"
+#include "kernels/compact/GrainMotion.hpp"
 
-#include "kernels/Lanes.hpp"
+#include "kernels/base/Lanes.hpp"
 
 #include <algorithm>
 

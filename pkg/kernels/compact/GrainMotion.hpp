@@ -1,11 +1,11 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "Flat.hpp"
+#include "kernels/compact/SphereArrays.hpp"
 
 namespace hexmembrane {
 
-/// The arrays of a step of the grains' motion, see FlatAssembly::moveGrains.
+/// The arrays of a step of the grains' motion, see SphereAssembly::moveGrains.
 struct GrainMotion {
 	Place* places;
 	Motion* motions;

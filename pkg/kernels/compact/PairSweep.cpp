@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
-#include "PairSweep.hpp"
+#include "kernels/compact/PairSweep.hpp"
 
-#include "FourContacts.hpp"
+#include "kernels/compact/FourContacts.hpp"
 
 #include <algorithm>
 #include <cmath>

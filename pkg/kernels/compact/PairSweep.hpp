@@ -1,11 +1,11 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "ContactStore.hpp"
+#include "kernels/compact/ContactStore.hpp"
 
 namespace hexmembrane {
 
-/// The arrays of a sweep over pairs of spheres, see ContactList::sweep.
+/// The arrays of a sweep over pairs of spheres, see PairContacts::sweep.
 struct PairSweep {
 	const int *first, *second; ///< spheres of each pair
 	ContactStore* store;

@@ -1,0 +1,231 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "kernels/compact/MembraneMotion.hpp"
+
+#include "kernels/base/Lanes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hexmembrane {
+
+MembraneMotion::MembraneMotion(const HexStencil& s, int rows) : velocity(s.perRing, s.rings), stencil(s), oRings(rows), total(s.perRing, s.rings) {}
+
+namespace {
+
+/// Powers of a force by the velocities before and after a step.
+struct Powers {
+	double before, after;
+};
+
+/// One coordinate of a row: v += dt damped(f/m), x += dt v, and the powers of the force `term`.
+HEXMEMBRANE_WIDEST Powers moveRow(int n, double dt, double damping, double mass, const double* __restrict f, const double* __restrict term,
+                                  double* __restrict v, double* __restrict x)
+{
+	double powerBefore = 0, powerAfter = 0;
+#pragma omp simd reduction(+ : powerBefore, powerAfter)
+	for (int i = 0; i < n; ++i) {
+		const double a = f[i] / mass, before = v[i];
+		const double p = a * (before + 0.5 * dt * a);
+		const double sign = (p > 0 ? 1. : 0.) - (p < 0 ? 1. : 0.);
+		const double after = before + dt * (a * (1 - damping * sign));
+		v[i] = after;
+		x[i] += dt * after;
+		powerBefore += term[i] * before;
+		powerAfter += term[i] * after;
+	}
+	return {powerBefore, powerAfter};
+}
+
+/// Records of four numbers into three rows, and three rows into such records, whose fourth number stays.
+HEXMEMBRANE_WIDEST void toRows(int n, const double* records, double* x, double* y, double* z)
+{
+	int i = 0;
+	for (; i + 4 <= n; i += 4) {
+		const double* from = records + 4 * i;
+		Lanes a = load4(from), b = load4(from + 4), c = load4(from + 8), d = load4(from + 12);
+		transpose(a, b, c, d);
+		store4(x + i, a);
+		store4(y + i, b);
+		store4(z + i, c);
+	}
+	for (; i < n; ++i) {
+		x[i] = records[4 * i];
+		y[i] = records[4 * i + 1];
+		z[i] = records[4 * i + 2];
+	}
+}
+
+HEXMEMBRANE_WIDEST void fromRows(int n, const double* x, const double* y, const double* z, double* records)
+{
+	int i = 0;
+	for (; i + 4 <= n; i += 4) {
+		double* to = records + 4 * i;
+		Lanes a = load4(x + i), b = load4(y + i), c = load4(z + i), d{to[3], to[7], to[11], to[15]};
+		transpose(a, b, c, d);
+		store4(to, a);
+		store4(to + 4, b);
+		store4(to + 8, c);
+		store4(to + 12, d);
+	}
+	for (; i < n; ++i) {
+		records[4 * i] = x[i];
+		records[4 * i + 1] = y[i];
+		records[4 * i + 2] = z[i];
+	}
+}
+
+HEXMEMBRANE_WIDEST void addRow(int n, const double* __restrict a, double* __restrict sum)
+{
+#pragma omp simd
+	for (int i = 0; i < n; ++i) sum[i] += a[i];
+}
+
+HEXMEMBRANE_WIDEST double dot(int n, const double* a, const double* b)
+{
+	double sum = 0;
+#pragma omp simd reduction(+ : sum)
+	for (int i = 0; i < n; ++i) sum += a[i] * b[i];
+	return sum;
+}
+
+HEXMEMBRANE_WIDEST double absoluteDot(int n, const double* a, const double* b)
+{
+	double sum = 0;
+#pragma omp simd reduction(+ : sum)
+	for (int i = 0; i < n; ++i) sum += std::abs(a[i] * b[i]);
+	return sum;
+}
+
+/// Largest of the squared speeds; NaN when one is not finite.
+HEXMEMBRANE_WIDEST double fastestSquared(int n, const double* x, const double* y, const double* z)
+{
+	double most = 0, all = 0;
+#pragma omp simd reduction(max : most) reduction(+ : all)
+	for (int i = 0; i < n; ++i) {
+		const double square = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+		all += square;
+		most = std::max(most, square);
+	}
+	return all - all == 0 ? most : all - all;
+}
+
+} // namespace
+
+void MembraneMotion::giveVelocities(Motion* motions) const
+{
+	for (int k = 0; k < stencil.rings; ++k)
+		for (int i = 0; i < stencil.perRing; ++i) motions[stencil.at(k, i)].velocity = velocity.get(k, i);
+}
+
+int MembraneMotion::move(double dt, double damping, double limit, const PaddedRings& bonds, std::vector<Term>& terms, const Contacts& contacts,
+                         PaddedRings& position, bool energies, int threads)
+{
+	const int n = stencil.perRing, rings = stencil.rings;
+	// one slot a ring, summed in their order: the same bits for any number of threads
+	std::vector<double> square(rings), kineticPart(rings, 0.), dampedPart(rings, 0.);
+	std::vector<Powers> oRingPart(rings, Powers{0, 0}), workPart(rings, Powers{0, 0});
+	std::vector<int> workOf(rings, -1);
+#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
+	for (int k = 0; k < rings; ++k) {
+		toRows(n, contacts.onParticle[k * n].force.data(), total.row(0, k), total.row(1, k), total.row(2, k));
+		// those of this ring that more than smooth contacts act on
+		const auto from = std::lower_bound(contacts.loaded.begin(), contacts.loaded.end(), contacts.grains + k * n);
+		const auto to = std::lower_bound(from, contacts.loaded.end(), contacts.grains + (k + 1) * n);
+		for (auto sphere = from; sphere != to; ++sphere) {
+			const int m = *sphere - contacts.grains, i = m - k * n;
+			total.set(k, i, contacts.onParticle[m].force + contacts.loads[m].force);
+		}
+		std::array<const double*, 3> worked{};
+		int& workedBy = workOf[k];
+		for (int a = 0; a < 3; ++a) addRow(n, bonds.row(a, k), total.row(a, k));
+		for (std::size_t t = 0; t < terms.size(); ++t) {
+			if (!terms[t].force || k < terms[t].first || k > terms[t].last) continue;
+			workedBy = int(t);
+			for (int a = 0; a < 3; ++a) {
+				worked[a] = terms[t].force->row(a, k);
+				addRow(n, worked[a], total.row(a, k));
+			}
+		}
+		if (energies)
+			for (int a = 0; a < 3; ++a) {
+				kineticPart[k] += 0.5 * mass * dot(n, velocity.row(a, k), velocity.row(a, k));
+				if (!isORing(k)) dampedPart[k] += damping * dt * absoluteDot(n, velocity.row(a, k), total.row(a, k));
+			}
+		if (isORing(k)) {
+			const Vec3& told = k < oRings ? below : above;
+			for (int a = 0; a < 3; ++a) {
+				double* v = velocity.row(a, k);
+				double* x = position.row(a, k);
+				const double* f = total.row(a, k);
+				for (int i = 0; i < n; ++i) {
+					// the O-ring holds against what acts, and brings the particle to its velocity
+					oRingPart[k].before += 0.5 * (mass * (told[a] - v[i]) * (v[i] + told[a]) - dt * f[i] * v[i]);
+					oRingPart[k].after -= 0.5 * dt * f[i] * told[a];
+					v[i] = told[a];
+					x[i] += dt * told[a];
+				}
+			}
+		} else
+			for (int a = 0; a < 3; ++a) {
+				const double* f = total.row(a, k);
+				const Powers power = moveRow(n, dt, damping, mass, f, workedBy < 0 ? f : worked[a], velocity.row(a, k), position.row(a, k));
+				workPart[k].before += 0.5 * dt * power.before;
+				workPart[k].after += 0.5 * dt * power.after;
+			}
+		position.wrap(k);
+		square[k] = fastestSquared(n, velocity.row(0, k), velocity.row(1, k), velocity.row(2, k));
+		fromRows(n, position.row(0, k), position.row(1, k), position.row(2, k), contacts.places[k * n].centre.data());
+		for (auto sphere = from; sphere != to; ++sphere)
+			contacts.motions[*sphere - contacts.grains].velocity = velocity.get(k, *sphere - contacts.grains - k * n);
+	}
+	double fastest2 = 0;
+	kinetic = oRingBefore = oRingAfter = 0;
+	for (Term& term : terms) term.before = term.after = 0;
+	int lost = -1;
+	for (int k = 0; k < rings; ++k) {
+		kinetic += kineticPart[k];
+		dampedWork += dampedPart[k];
+		oRingBefore += oRingPart[k].before;
+		oRingAfter += oRingPart[k].after;
+		if (workOf[k] >= 0) {
+			terms[workOf[k]].before += workPart[k].before;
+			terms[workOf[k]].after += workPart[k].after;
+		}
+		if (lost < 0 && !(square[k] * dt * dt < limit * limit))
+			for (int i = 0; i < n && lost < 0; ++i)
+				if (!(velocity.get(k, i).squaredNorm() * dt * dt < limit * limit)) lost = k * n + i;
+		fastest2 = std::max(fastest2, square[k]);
+	}
+	fastest = std::sqrt(fastest2);
+	return lost;
+}
+
+int MembraneMotion::moveSpins(double dt, double damping, double inertia, const PaddedRings& bondTorque, const Load* loads, PaddedRings& spin, Motion* motions,
+                              bool energies)
+{
+	const int n = stencil.perRing;
+	int lost = -1;
+	for (int k = oRings; k < stencil.rings - oRings; ++k) {
+		for (int i = 0; i < n; ++i) {
+			const int m = k * n + i;
+			const Vec3 torque = bondTorque.get(k, i) + loads[m].torque, before = spin.get(k, i);
+			Vec3 after;
+			for (int a = 0; a < 3; ++a) {
+				const double acceleration = torque[a] / inertia, power = acceleration * (before[a] + 0.5 * dt * acceleration);
+				after[a] = before[a] + dt * acceleration * (1 - damping * ((power > 0) - (power < 0)));
+			}
+			if (energies) {
+				kinetic += 0.5 * inertia * before.squaredNorm();
+				dampedWork += damping * dt * before.cwiseAbs().dot(torque.cwiseAbs());
+			}
+			if (lost < 0 && !std::isfinite(after.sum())) lost = m;
+			spin.set(k, i, after);
+			motions[m].spin = after;
+		}
+		spin.wrap(k);
+	}
+	return lost;
+}
+
+} // namespace hexmembrane

@@ -1,0 +1,135 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "kernels/compact/BoundaryContacts.hpp"
+#include "kernels/compact/PairContacts.hpp"
+#include "kernels/compact/FrictionlessContacts.hpp"
+#include "kernels/compact/ThreadPartition.hpp"
+#include "kernels/contact/ContactMaterial.hpp"
+
+#include <vector>
+
+namespace hexmembrane {
+
+/// Spheres and boundaries of the compact tier: flat arrays, neighbour lists with a skin, contact forces and the motion of the grains. The membrane's own
+/// mechanics and motion are MembraneMotion'.
+///
+/// Grains come first and are sorted in space whenever lists are made anew; the membrane's particles follow, ring by ring, and keep their order. Lists hold
+/// all pairs nearer than the skin and are made anew before any sphere or boundary has moved half a skin: no contact is missed.
+class SphereAssembly {
+public:
+	/// All spheres, in any order of grains. `grains` of them come before the membrane's particles.
+	struct Sphere {
+		int id; ///< the caller's name for it
+		Place place;
+		Motion motion;
+		double mass, inertia; ///< kg, kg m2
+		int material;
+		bool fixed; ///< moves at its velocity whatever acts on it
+	};
+	void setSpheres(const std::vector<Sphere>& spheres, int grains);
+	/// \param skin (m), > 0
+	void setSkin(double skin);
+	double skin() const { return gap; }
+	/// Parameters of all materials; contacts follow at once. A membrane particle that touches a grain without friction needs no memory.
+	void setMaterials(const std::vector<ContactMaterial>& table);
+	/// Pairs of membrane particles are left out of the lists, unless this is set: `bonded(a, b)` says which are neighbours in the membrane.
+	void setMembraneContacts(std::function<bool(int, int)> bonded) { bondedNeighbours = std::move(bonded); }
+
+	const ContactMaterial& materialOf(int index) const { return materials[index]; }
+	ContactLaw lawOf(int i, int j) const { return sphereLaw(materials[material[i]], materials[material[j]], places[i].radius, places[j].radius); }
+
+	int spheres() const { return int(places.size()); }
+	int grains() const { return grainCount; }
+
+	/// Whether the lists hold every contact at the present positions. Measures how far spheres have moved when it must.
+	bool listsHold();
+	/// Sorts the grains and makes all lists anew; memories of contacts move over.
+	void makeLists();
+	/// Steps at which lists were made so far.
+	long listsMade() const { return made; }
+
+	/// Particles that contacts with memory, boundaries or `outside` may load, ascending: all others have no load, nobody looks at their motion, and they
+	/// need neither be cleared nor kept up to date.
+	const std::vector<int>& loadedParticles() const { return loaded; }
+
+	/// Loads of one step: those of `outside` (empty: none) and of all contacts.
+	void computeLoads(double dt, int threads);
+	/// Leapfrog with local damping, as YADE's NewtonIntegrator: v += dt a, a reduced by the damping where it drives the motion and raised where it
+	/// brakes it, x += dt v. Grains only.
+	/// \return id of a grain that moved half a skin or more, or is not finite, -1: none
+	int moveGrains(double dt, double damping, bool energies, int threads);
+	/// Counts motion of other spheres or boundaries, of this speed (m/s), against the skin.
+	void noteSpeed(double speed, double dt) { fastest = std::max(fastest, speed * dt); }
+	/// Ends a step: adds the largest way of it to what has been travelled.
+	void endStep()
+	{
+		travelled += fastest;
+		fastest = 0;
+	}
+
+	// State: read and written by the caller between steps
+	std::vector<int> id;
+	std::vector<Place> places;
+	std::vector<Motion> motions;
+	std::vector<double> mass, inertia;
+	std::vector<int> material;
+	std::vector<unsigned char> fixed;
+	std::vector<Load> outside; ///< loads from elsewhere, held for the step; empty: none
+	std::vector<Vec3> turned;  ///< rotation of each grain since this was last zeroed (rad)
+	std::vector<FlatBoundary> boundaries;
+
+	// Results of computeLoads()
+	std::vector<Load> loads;      ///< on grains; on particles what contacts with memory and `outside` do
+	std::vector<Push> onParticle; ///< what frictionless contacts do to the membrane's particles (N)
+	std::vector<BoundaryLoad> onBoundary;
+	SweepSums sums;        ///< of all steps since it was last reset
+	double dampedWork = 0; ///< taken by the local damping since it was last reset (J)
+	double kinetic = 0;    ///< of the grains, by the velocities before the last step (J)
+
+	// Contacts
+	PairContacts contacts;
+	FrictionlessContacts smooth;
+	std::vector<BoundaryContacts> boundaryContacts;
+
+	// What lists were made from: part of the state that is saved
+	std::vector<Vec3> listed; ///< centres
+	std::vector<FlatBoundary> listedBoundaries;
+	double travelled = 0; ///< upper bound of every sphere's way since (m)
+	/// Lists from `listed` and `listedBoundaries` without sorting: what makeLists() ends with, and what a loaded state begins with.
+	void buildLists(const std::vector<int>& newIndex);
+
+	double elasticEnergy() const;
+
+private:
+	void sortGrains(std::vector<int>& newIndex);
+	/// The division of the spheres among so many threads.
+	void divide(int threads);
+	void listLoaded();
+	void clearLoads(int from, int to, bool all);
+	LawOfKind lawOfKind(int i, int j) const { return {lawOf(i, j), material[i] * int(materials.size()) + material[j]}; }
+	LawOfKind lawOfKind(const FlatBoundary& boundary, int i) const
+	{
+		return {boundaryLaw(materials[boundary.material], materials[material[i]], places[i].radius),
+		        boundary.material * int(materials.size()) + material[i]};
+	}
+	void findPairs(NearPairs& general, std::vector<FrictionlessContacts::Pair>& frictionless) const;
+	/// Whether a contact of these two has neither friction nor rolling resistance.
+	bool isSmooth(int i, int j) const
+	{
+		const ContactMaterial &a = materials[material[i]], &b = materials[material[j]];
+		return !(std::min(a.friction, b.friction) > 0) && !(std::min(a.rollingFriction, b.rollingFriction) > 0);
+	}
+
+	ThreadPartition runs; ///< of the present lists; none: to be made
+	int grainCount = 0;
+	std::vector<int> loaded;
+	bool loadsStale = true; ///< particles that are not in `loaded` may have a load
+	double gap = 0, fastest = 0;
+	long made = 0;
+	std::vector<ContactMaterial> materials;
+	std::vector<Frictions> frictions; ///< of every pair of materials
+	std::function<bool(int, int)> bondedNeighbours;
+};
+
+} // namespace hexmembrane

@@ -1,0 +1,32 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "kernels/membrane/LatticeConstants.hpp"
+
+#include "kernels/base/Check.hpp"
+
+#include <cmath>
+
+namespace hexmembrane {
+
+SheetConstants sheetFromBonds(const BondStiffness& b)
+{
+	requirePositive("MembraneBonds.kn", b.normal, "N/m");
+	requireNonNegative("MembraneBonds.ks", b.shear, "N/m");
+	const double sum = 3 * b.normal + b.shear;
+	return {2 * std::sqrt(3.) * b.normal * (b.normal + b.shear) / sum, (b.normal - b.shear) / sum};
+}
+
+BondStiffness bondsFromSheet(const SheetConstants& s)
+{
+	requirePositive("MembraneBonds.young * thickness", s.stretch, "N/m");
+	requireFinite("MembraneBonds.poisson", s.poisson, "1");
+	// a third in binary is a rounding away from 1/3: ks = 0 must be reachable
+	const double third = 1. / 3, eps = 1e-12;
+	if (s.poisson < 0 || s.poisson > third + eps)
+		reject("MembraneBonds.poisson", s.poisson, "a hexagonal lattice of springs reaches 0 to 1/3 only (rubber's 0.5 cannot be had)",
+		       "1/3 for central springs (ks = 0), which is nearest to rubber");
+	const double kn = s.stretch / (std::sqrt(3.) * (1 - s.poisson));
+	const double ks = kn * (1 - 3 * s.poisson) / (1 + s.poisson);
+	return {kn, s.poisson > third - eps ? 0. : ks};
+}
+
+} // namespace hexmembrane

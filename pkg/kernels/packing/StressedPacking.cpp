@@ -1,0 +1,168 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "kernels/packing/StressedPacking.hpp"
+
+#include "kernels/base/Check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace hexmembrane {
+
+namespace {
+
+/// How much looser than wanted it starts, and the loosest start.
+constexpr double looser = 0.08, loosest = 0.65;
+/// Inertial number of the growth; share of the friction lost in the time that a grain needs to move its own size under the stress.
+constexpr double inertialNumber = 1e-3, frictionLoss = 0.05;
+/// Friction below this is none.
+constexpr double noFriction = 1e-4;
+/// What counts as the wanted stress and as equilibrium, for this many looks in a row.
+constexpr double stressTolerance = 0.03, equilibrium = 1e-3;
+constexpr int lookEvery = 100, looks = 3;
+constexpr long maxSteps = 1000000;
+
+void check(const StressedPackingSpec& s)
+{
+	requireFinite("CylinderPacking.porosity", s.packing.porosity, "1 (a packing under stress needs one)");
+	requirePositive("CylinderPacking.stress", s.stress, "Pa");
+	requirePositive("CylinderPacking.young", s.law.modulus, "Pa");
+	requirePositive("CylinderPacking.stiffnessRatio", s.law.stiffnessRatio, "1 (kn/ks)");
+	requireNonNegative("CylinderPacking.friction", s.law.friction, "1 (tan of the angle)");
+	requireNonNegative("CylinderPacking.rollingFriction", s.law.rollingFriction, "1");
+	requireNonNegative("CylinderPacking.damping", s.law.damping, "1");
+	requirePositive("CylinderPacking.porosityTolerance", s.porosityTolerance, "1");
+	if (s.law.stiffnessRatio < 1)
+		reject("CylinderPacking.stiffnessRatio", s.law.stiffnessRatio, "springs stiffer in shear than along the normal", "kn/ks >= 1");
+	if (s.law.damping >= 1) reject("CylinderPacking.damping", s.law.damping, "would stop everything", "below 1, 0.5 by default");
+	if (s.porosityTolerance >= 0.1) reject("CylinderPacking.porosityTolerance", s.porosityTolerance, "no tolerance of a porosity", "e.g. 0.001");
+	if (s.stress > 1e-2 * s.law.modulus)
+		reject("CylinderPacking.stress", s.stress, "grains would overlap by more than 1 %",
+		       "at most 0.01 of CylinderPacking.young = " + formatNumber(s.law.modulus));
+	if (s.packing.porosity >= loosest)
+		reject("CylinderPacking.porosity", s.packing.porosity, "no packing of spheres that carries stress", "below " + formatNumber(loosest));
+}
+
+/// Brings one assembly to size 1 and to the wanted stress.
+class Compactor {
+public:
+	Compactor(const StressedPackingSpec& spec, const SpherePacking& start, double toSize)
+	    : wanted(spec.stress), final(spec.law.friction), rolling(spec.law.rollingFriction), friction(final),
+	      growth(inertialNumber / std::sqrt(spec.law.modulus / (2 * spec.stress)) * GrainAssembly::timeStep),
+	      loss(frictionLoss / std::sqrt(spec.law.modulus / (2 * spec.stress)) * GrainAssembly::timeStep),
+	      grains(start.centres, scaledBy(start.radii, toSize), 1 / toSize, spec.packing.radius, spec.packing.height, spec.law)
+	{
+	}
+
+	/// Grows to size 1, then waits there until the stress is not above the wanted one. \returns false when even smooth grains are too stiff on the way
+	bool compress()
+	{
+		while (grains.factor() < 1 || over() > 1 + stressTolerance) {
+			if (friction < noFriction) return false;
+			grains.step(std::min(growth * std::clamp(1 - over() / 2, 0.0, 1.0), 1 / grains.factor() - 1));
+			lowerFriction();
+			count();
+		}
+		return true;
+	}
+
+	/// With the final friction: size follows the stress until both stand still. Slow, so that what it does to the stress is seen in time.
+	void settle()
+	{
+		grains.setFriction(final, rolling);
+		for (int good = 0, step = 1; good < looks; ++step) {
+			const double lack = 1 - over();
+			grains.step(growth * (lack > 0.5 ? 1 : 0.1) * std::clamp(lack, -1.0, 1.0));
+			count();
+			if (step % lookEvery != 0) continue;
+			good = std::abs(1 - over()) < stressTolerance && grains.unbalancedRatio() < equilibrium ? good + 1 : 0;
+		}
+	}
+
+	const GrainAssembly& assembly() const { return grains; }
+	double lowestFriction() const { return friction; }
+	long steps() const { return made; }
+
+private:
+	static std::vector<double> scaledBy(std::vector<double> radii, double factor)
+	{
+		for (double& r : radii) r *= factor;
+		return radii;
+	}
+
+	double over() const { return grains.meanStress() / wanted; }
+
+	void lowerFriction()
+	{
+		if (over() <= 1) return;
+		friction *= 1 - loss * std::min(over() - 1, 1.0);
+		grains.setFriction(friction, rolling * (friction / final));
+	}
+
+	void count()
+	{
+		if (++made > maxSteps)
+			throw std::runtime_error("CylinderPacking.stress = " + formatNumber(wanted) + ": no equilibrium after " + std::to_string(maxSteps) +
+			                         " steps, the stress is " + formatNumber(grains.meanStress()) +
+			                         " Pa; fix: a higher stress, more damping, or another porosity");
+	}
+
+	double wanted, final, rolling, friction, growth, loss;
+	long made = 0;
+	GrainAssembly grains;
+};
+
+[[noreturn]] void refuse(const StressedPackingSpec& spec, bool tooDense, double reached)
+{
+	// another seed or a neighbouring porosity may end a little off what this one reached, a loose one more than a dense one
+	const double advised = tooDense ? std::ceil((reached + 0.002) * 1000) / 1000 : std::floor((reached - 0.01) * 1000) / 1000;
+	throw std::runtime_error("CylinderPacking.porosity = " + formatNumber(spec.packing.porosity) + ": " + (tooDense ? "denser" : "looser") +
+	                         " than these " + std::to_string(spec.packing.radii.size()) + " grains get at " + formatNumber(spec.stress) +
+	                         " Pa with friction " + formatNumber(spec.law.friction) +
+	                         (spec.law.rollingFriction > 0 ? " and rolling friction " + formatNumber(spec.law.rollingFriction) : "") + ", " +
+	                         formatNumber(reached) + " was reached; fix: a porosity of at " + (tooDense ? "least " : "most ") + formatNumber(advised) +
+	                         (tooDense ? "" : ", or more friction or rolling friction"));
+}
+
+} // namespace
+
+StressedPacking packUnderStress(const StressedPackingSpec& spec)
+{
+	check(spec);
+	SpherePackingSpec loose = spec.packing;
+	loose.porosity = std::min(spec.packing.porosity + looser, loosest);
+	loose.even = 0;
+	const SpherePacking start = packSpheres(loose);
+	const double size = std::cbrt((1 - spec.packing.porosity) / (1 - start.porosity));
+
+	Compactor compactor(spec, start, size);
+	const bool reached = compactor.compress();
+	compactor.settle();
+	const GrainAssembly& grains = compactor.assembly();
+
+	StressedPacking out;
+	out.scale = start.scale * size * grains.factor();
+	out.centres = grains.centres();
+	out.radii = spec.packing.radii;
+	double mean = 0;
+	for (double& r : out.radii) {
+		r *= out.scale;
+		mean += r / double(out.radii.size());
+	}
+	out.porosity = packingPorosity(out.radii, spec.packing.radius, spec.packing.height);
+	if (!reached || out.porosity > spec.packing.porosity + spec.porosityTolerance) refuse(spec, true, out.porosity);
+	if (out.porosity < spec.packing.porosity - spec.porosityTolerance) refuse(spec, false, out.porosity);
+	out.maxOverlap = largestOverlap(out.centres, out.radii, spec.packing.radius, spec.packing.height) / mean;
+	out.shakesUsed = start.shakesUsed;
+	out.steps = start.steps + compactor.steps();
+	out.radialStress = grains.radialStress();
+	out.axialStress = grains.axialStress();
+	out.coordination = 2.0 * grains.contacts() / double(out.radii.size());
+	out.rattlers = grains.rattlers() / double(out.radii.size());
+	out.unbalanced = grains.unbalancedRatio();
+	out.frictionReached = compactor.lowestFriction();
+	return out;
+}
+
+} // namespace hexmembrane

@@ -1,0 +1,39 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "kernels/packing/GrainAssembly.hpp"
+#include "kernels/packing/SpherePacking.hpp"
+
+namespace hexmembrane {
+
+/// A packing in equilibrium under a small isotropic stress at a given porosity.
+struct StressedPackingSpec {
+	SpherePackingSpec packing;       ///< its porosity is required
+	double stress;                   ///< Pa, > 0: mean pressure on the smooth walls; at most 1e-2 of the modulus
+	GrainLaw law;                    ///< friction and rolling friction are those of the finished packing
+	double porosityTolerance = 1e-3; ///< in (0, 0.1)
+};
+
+/// Centres and radii as in SpherePacking (`scale` and `porosity` are those reached, contacts overlap by what the stress asks for), and:
+struct StressedPacking : SpherePacking {
+	double radialStress = 0;    ///< on the cylinder's side (Pa, compression positive)
+	double axialStress = 0;     ///< on its ends (Pa, compression positive)
+	double coordination = 0;    ///< contacts with grains of a grain, mean
+	double rattlers = 0;        ///< share of grains without any contact
+	double unbalanced = 0;      ///< mean net force over mean contact force
+	double frictionReached = 0; ///< down to which friction was lowered on the way: the measure of how dense the packing is for its friction
+};
+
+/// Compresses an uneven, loose packing (SpherePacking at 0.08 above the wanted porosity, not spread) by growing its grains inside fixed smooth walls,
+/// slowly (inertial number 1e-3 and less), starting with the friction of the finished packing. Where the mean stress exceeds the wanted one, friction is
+/// lowered, and rolling friction with it, until the grains give way: so the packing reaches the wanted size at the wanted stress whatever its porosity, on one path and without
+/// trials. Then friction is set to its final value and the size trimmed within the tolerance of the porosity until stress (3 %) and equilibrium
+/// (unbalanced ratio 1e-3) are there.
+///
+/// Reachable is what lies between the packing without friction (dense) and the one that keeps its friction throughout (loose; rolling friction holds looser
+/// ones); anything beyond is an
+/// error that names the porosity reached. Measured ranges: pkg/specimen/README.md.
+/// \throws std::invalid_argument for bad input, std::runtime_error for a porosity out of reach or no equilibrium
+StressedPacking packUnderStress(const StressedPackingSpec& spec);
+
+} // namespace hexmembrane
