@@ -14,7 +14,7 @@ void ContactStore::start(std::size_t count, const std::vector<PairKind<double>>&
 
 void ContactStore::put(int p, const Contact& contact)
 {
-	contacts[p].memory = contact.memory;
+	contacts[p].memory = withoutLostSprings(contact.memory, lawOf(contacts[p].springs, table[kinds[p]]));
 	bits[p] = contact.bits;
 	if (!contact.bonded()) return;
 	if (strengths.empty()) strengths.resize(size(), {0, 0});

@@ -4,6 +4,7 @@
 #include "kernels/compact/SphereArrays.hpp"
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace hexmembrane {
@@ -36,7 +37,7 @@ public:
 		contacts[p].springs = pair.springs;
 		kinds[p] = static_cast<std::uint16_t>(pair.kind);
 	}
-	/// Memory, bits and strengths of a bond; the other parameters stay those of setSprings().
+	/// Memory, bits and strengths of a bond; the other parameters stay those of setSprings(), and what they have no spring for is not kept.
 	void put(int p, const Contact& contact);
 	Contact get(int p) const;
 
@@ -51,67 +52,67 @@ private:
 	std::vector<BondStrengths> strengths; ///< of bonds; empty: there has been no bond
 };
 
-/// Where four contacts of a store stand.
+/// Where four contacts of a store stand. Their records become lanes, and back, row by row and number by number, straight into the members: a copy of the whole
+/// through memory would wait for its own stores.
 struct FourContacts {
 	const int* index;
 
-	/// Four records of so many rows of doubles become lanes, and back.
-	template <class Record> HEXMEMBRANE_INLINE void load(const Record* all, Lanes* lanes) const
-	{
-		const auto* const a = reinterpret_cast<const double*>(all + index[0]);
-		const auto* const b = reinterpret_cast<const double*>(all + index[1]);
-		const auto* const c = reinterpret_cast<const double*>(all + index[2]);
-		const auto* const d = reinterpret_cast<const double*>(all + index[3]);
-		for (int row = 0; row < Record::rows; ++row) {
-			Lanes w = load4(a + 4 * row), x = load4(b + 4 * row), y = load4(c + 4 * row), z = load4(d + 4 * row);
-			transpose(w, x, y, z);
-			lanes[4 * row] = w;
-			lanes[4 * row + 1] = x;
-			lanes[4 * row + 2] = y;
-			lanes[4 * row + 3] = z;
-		}
-	}
-	template <class Record> HEXMEMBRANE_INLINE void store(const Lanes* lanes, Record* all) const
-	{
-		auto* const a = reinterpret_cast<double*>(all + index[0]);
-		auto* const b = reinterpret_cast<double*>(all + index[1]);
-		auto* const c = reinterpret_cast<double*>(all + index[2]);
-		auto* const d = reinterpret_cast<double*>(all + index[3]);
-		for (int row = 0; row < Record::rows; ++row) {
-			Lanes w = lanes[4 * row], x = lanes[4 * row + 1], y = lanes[4 * row + 2], z = lanes[4 * row + 3];
-			transpose(w, x, y, z);
-			store4(a + 4 * row, w);
-			store4(b + 4 * row, x);
-			store4(c + 4 * row, y);
-			store4(d + 4 * row, z);
-		}
-	}
-
 	HEXMEMBRANE_INLINE StoredContact<Lanes> contacts(const ContactStore& store) const
 	{
-		Lanes lanes[StoredContact<double>::numbers];
-		load(store.contacts.data(), lanes);
 		StoredContact<Lanes> four;
-		__builtin_memcpy(&four, lanes, sizeof four);
+		load(store.contacts.data(), reinterpret_cast<Lanes*>(&four), std::make_integer_sequence<int, StoredContact<double>::rows>());
 		return four;
 	}
 	HEXMEMBRANE_INLINE void put(const StoredContact<Lanes>& four, ContactStore& store) const
 	{
-		Lanes lanes[StoredContact<double>::numbers];
-		__builtin_memcpy(lanes, &four, sizeof four);
-		this->store(lanes, store.contacts.data());
+		save(reinterpret_cast<const Lanes*>(&four), store.contacts.data(), std::make_integer_sequence<int, StoredContact<double>::rows>());
 	}
 	HEXMEMBRANE_INLINE PairKind<Lanes> kinds(const ContactStore& store) const
 	{
-		static_assert(sizeof(PairKind<Lanes>) == 4 * sizeof(PairKind<double>), "a kind is its numbers");
-		const double* all[4];
-		for (int k = 0; k < 4; ++k) all[k] = reinterpret_cast<const double*>(store.table.data() + store.kinds[index[k]]);
 		PairKind<Lanes> four;
-		for (std::size_t n = 0; n < sizeof(PairKind<double>) / sizeof(double); ++n) {
-			const Lanes value{all[0][n], all[1][n], all[2][n], all[3][n]};
-			__builtin_memcpy(reinterpret_cast<Lanes*>(&four) + n, &value, sizeof value);
-		}
+		gather(store, reinterpret_cast<Lanes*>(&four), std::make_integer_sequence<int, int(sizeof(four) / sizeof(Lanes))>());
 		return four;
+	}
+
+private:
+	static_assert(sizeof(PairKind<Lanes>) == 4 * sizeof(PairKind<double>), "a kind is its numbers");
+
+	template <int row> HEXMEMBRANE_INLINE double* at(const StoredContact<double>* all, int k) const
+	{
+		return const_cast<double*>(reinterpret_cast<const double*>(all + index[k])) + 4 * row;
+	}
+	template <int... row> HEXMEMBRANE_INLINE void load(const StoredContact<double>* all, Lanes* lanes, std::integer_sequence<int, row...>) const
+	{
+		(loadRow(load4(at<row>(all, 0)), load4(at<row>(all, 1)), load4(at<row>(all, 2)), load4(at<row>(all, 3)), lanes + 4 * row), ...);
+	}
+	static HEXMEMBRANE_INLINE void loadRow(Lanes a, Lanes b, Lanes c, Lanes d, Lanes* lanes)
+	{
+		transpose(a, b, c, d);
+		lanes[0] = a;
+		lanes[1] = b;
+		lanes[2] = c;
+		lanes[3] = d;
+	}
+	template <int... row> HEXMEMBRANE_INLINE void save(const Lanes* lanes, StoredContact<double>* all, std::integer_sequence<int, row...>) const
+	{
+		(saveRow(lanes[4 * row], lanes[4 * row + 1], lanes[4 * row + 2], lanes[4 * row + 3], at<row>(all, 0), at<row>(all, 1), at<row>(all, 2), at<row>(all, 3)),
+		 ...);
+	}
+	static HEXMEMBRANE_INLINE void saveRow(Lanes a, Lanes b, Lanes c, Lanes d, double* toA, double* toB, double* toC, double* toD)
+	{
+		transpose(a, b, c, d);
+		store4(toA, a);
+		store4(toB, b);
+		store4(toC, c);
+		store4(toD, d);
+	}
+	template <int... number> HEXMEMBRANE_INLINE void gather(const ContactStore& store, Lanes* lanes, std::integer_sequence<int, number...>) const
+	{
+		const PairKind<double>* const table = store.table.data();
+		const std::uint16_t* const kinds = store.kinds.data();
+		const auto *a = reinterpret_cast<const double*>(table + kinds[index[0]]), *b = reinterpret_cast<const double*>(table + kinds[index[1]]),
+			   *c = reinterpret_cast<const double*>(table + kinds[index[2]]), *d = reinterpret_cast<const double*>(table + kinds[index[3]]);
+		((lanes[number] = Lanes{a[number], b[number], c[number], d[number]}), ...);
 	}
 };
 

@@ -95,8 +95,10 @@ struct Meeting {
 inline ContactStep advanceContact(Contact& contact, const Meeting& meeting, double dt)
 {
 	bool bonded = contact.bonded();
-	const ContactMotion motion = carry(contact.memory, meeting.normal, meeting.overlap, meeting.motion(), dt);
-	const ContactStep step = advanceContact(contact.law, motion, contact.memory.shear, contact.memory.moment, bonded);
+	const PairMotion<double> motion = meeting.motion();
+	carry(contact.memory, meeting.normal, motion.spinSum, dt);
+	const Vec3 slide = dt * acrossNormal(motion.velocity, meeting.normal), bend = dt * acrossNormal(motion.spinDifference, meeting.normal);
+	const ContactStep step = advanceContact(contact.law, {meeting.overlap, slide, bend}, contact.memory.shear, contact.memory.moment, bonded);
 	contact.bits = (step.open ? 0 : contactTouching) | (bonded ? contactBonded : 0);
 	return step;
 }

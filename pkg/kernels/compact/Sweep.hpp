@@ -35,8 +35,10 @@ HEXMEMBRANE_INLINE void advanceFour(ContactStore& store, const int* index, FourP
 {
 	const FourContacts at{index};
 	StoredContact<Lanes> contact = at.contacts(store);
-	const MotionOf<Lanes> motion = carry<Lanes>(contact.memory, four.normal, four.overlap, four.motion, lanes(dt));
-	const UnbondedStep<Lanes> step = advanceUnbonded<Lanes>(lawOf(contact.springs, at.kinds(store)), motion, contact.memory.shear, contact.memory.moment);
+	carry<Lanes>(contact.memory, four.normal, four.motion.spinSum, lanes(dt));
+	const Lanes3 slide = lanes(dt) * acrossNormal(four.motion.velocity, four.normal), bend = lanes(dt) * acrossNormal(four.motion.spinDifference, four.normal);
+	const UnbondedStep<Lanes> step =
+	        advanceUnbonded<Lanes>(lawOf(contact.springs, at.kinds(store)), four.overlap, slide, bend, contact.memory.shear, contact.memory.moment);
 	at.put(contact, store);
 	works.slip += step.slip;
 	works.roll += step.roll;

@@ -62,12 +62,11 @@ struct ContactLaw : LinearLaw<double> {
 };
 
 /// How the two bodies of a contact moved.
-template <class V> struct MotionOf {
-	V overlap;       ///< u (m) now
-	Vector<V> slide; ///< displacement in the contact plane during the step (m)
-	Vector<V> bend;  ///< rotation about axes in the contact plane during the step (rad)
+struct ContactMotion {
+	double overlap; ///< u (m) now
+	Vec3 slide;     ///< displacement in the contact plane during the step (m)
+	Vec3 bend;      ///< rotation about axes in the contact plane during the step (rad)
 };
-using ContactMotion = MotionOf<double>;
 
 enum class BondBreak { none, tension, shear };
 
@@ -177,11 +176,12 @@ template <class V> struct SpringTrial {
 	Mask<V> open, gone, cut;
 
 	HEXMEMBRANE_INLINE SpringTrial(const Vector<V>& load, const Vector<V>& displacement, V stiffness, V most, Mask<V> opened)
-	    : before(load), trial(load - stiffness * displacement), square(dot(trial, trial)), limit(most), open(opened), gone(opened | !(stiffness > 0)),
-	      cut(square > most * most)
+	    : before(load), trial(load - stiffness * displacement), square(dot(trial, trial)), limit(most), open(opened), gone(opened), cut(square > most * most)
 	{
+		if constexpr (std::is_same<V, double>::value) gone = opened || !(stiffness > 0);
 	}
-	/// The second half. A contact that opens, and a spring without stiffness, hold nothing. \param perSize 1/|trial| \param perStiffness 0: no spring
+	/// The second half. A contact that opens, and a spring without stiffness, hold nothing (what is stored for lanes never has a load on such a spring, see
+	/// withoutLostSprings()). \param perSize 1/|trial| \param perStiffness 1/stiffness; of no consequence for a spring without load
 	/// \return work dissipated, (before + kept)/2 . (trial - kept)/stiffness: what is done on the spring by the trapezoidal rule less its gain in elastic
 	/// energy (PFC's definition); of one that opens, what it held.
 	HEXMEMBRANE_INLINE V keep(V perSize, V perStiffness, Vector<V>& load) const
@@ -217,13 +217,14 @@ template <class V> struct UnbondedStep {
 ///   shear  -> shear - ks slide,   cut to mu N
 ///   moment -> moment - kr bend,   cut to mu_r Rbar N
 template <class V>
-HEXMEMBRANE_INLINE UnbondedStep<V> advanceUnbonded(const LinearLaw<V>& law, const MotionOf<V>& motion, Vector<V>& shear, Vector<V>& moment)
+HEXMEMBRANE_INLINE UnbondedStep<V> advanceUnbonded(const LinearLaw<V>& law, V overlap, const Vector<V>& slide, const Vector<V>& bend, Vector<V>& shear,
+                                                   Vector<V>& moment)
 {
 	const V nothing = constant<V>(0);
-	const Mask<V> open = motion.overlap < 0;
-	UnbondedStep<V> step{open ? nothing : law.kn * motion.overlap, open, nothing, nothing};
-	const SpringTrial<V> slip(shear, motion.slide, law.ks, law.friction * step.normal, open);
-	const SpringTrial<V> roll(moment, motion.bend, law.kr, law.rollingArm * step.normal, open);
+	const Mask<V> open = overlap < 0;
+	UnbondedStep<V> step{open ? nothing : law.kn * overlap, open, nothing, nothing};
+	const SpringTrial<V> slip(shear, slide, law.ks, law.friction * step.normal, open);
+	const SpringTrial<V> roll(moment, bend, law.kr, law.rollingArm * step.normal, open);
 	if constexpr (std::is_same<V, double>::value) // roots and quotients are for the few that slide
 		if (slip.elastic() && roll.elastic()) {
 			shear = slip.trial;
@@ -233,8 +234,12 @@ HEXMEMBRANE_INLINE UnbondedStep<V> advanceUnbonded(const LinearLaw<V>& law, cons
 	V perShear = squareRoot(slip.square), perMoment = squareRoot(roll.square), perKs = law.ks, perKr = law.kr;
 	invert(perShear, perMoment);
 	invert(perKs, perKr);
-	step.slip = slip.keep(perShear, law.ks > 0 ? perKs : nothing, shear);
-	step.roll = roll.keep(perMoment, law.kr > 0 ? perKr : nothing, moment);
+	if constexpr (std::is_same<V, double>::value) { // a script may take a spring away while it holds something
+		if (!(law.ks > 0)) perKs = 0;
+		if (!(law.kr > 0)) perKr = 0;
+	}
+	step.slip = slip.keep(perShear, perKs, shear);
+	step.roll = roll.keep(perMoment, perKr, moment);
 	return step;
 }
 
@@ -242,7 +247,7 @@ HEXMEMBRANE_INLINE UnbondedStep<V> advanceUnbonded(const LinearLaw<V>& law, cons
 inline ContactStep advanceContact(const ContactLaw& law, const ContactMotion& motion, Vec3& shear, Vec3& moment, bool& bonded)
 {
 	if (bonded) return advanceBond(law, motion, shear, moment, bonded);
-	const UnbondedStep<double> step = advanceUnbonded<double>(law, motion, shear, moment);
+	const UnbondedStep<double> step = advanceUnbonded<double>(law, motion.overlap, motion.slide, motion.bend, shear, moment);
 	return {step.normal, step.open, BondBreak::none, {step.slip, step.roll, 0}};
 }
 
@@ -256,22 +261,27 @@ template <class V> struct ContactMemory {
 };
 inline ContactMemory<double> noMemory() { return {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}; }
 
+/// What is left when springs were taken away: a spring without stiffness holds nothing.
+inline ContactMemory<double> withoutLostSprings(ContactMemory<double> memory, const LinearLaw<double>& law)
+{
+	if (!(law.ks > 0)) memory.shear = Vec3::Zero();
+	if (!(law.kr > 0)) memory.moment = Vec3::Zero();
+	return memory;
+}
+
 /// How the two bodies of a contact move.
 template <class V> struct PairMotion {
 	Vector<V> velocity;                ///< of body 2 against body 1 at the contact point (m/s)
 	Vector<V> spinSum, spinDifference; ///< of both spins, and of body 2 against body 1 (rad/s)
 };
 
-/// Carries what the contact remembers to its present normal. \return how the bodies moved during the step
-template <class V>
-HEXMEMBRANE_INLINE MotionOf<V> carry(ContactMemory<V>& memory, const Vector<V>& normal, V overlap, const PairMotion<V>& motion, V dt)
+/// Carries what the contact remembers to its present normal.
+template <class V> HEXMEMBRANE_INLINE void carry(ContactMemory<V>& memory, const Vector<V>& normal, const Vector<V>& spinSum, V dt)
 {
-	const Vector<V> tilt = cross(memory.normal, normal), twist = dot(memory.normal, (0.5 * dt) * motion.spinSum) * memory.normal;
+	const Vector<V> tilt = cross(memory.normal, normal), twist = (0.5 * dt * dot(memory.normal, spinSum)) * memory.normal;
 	memory.shear = carried(memory.shear, tilt, twist);
 	memory.moment = carried(memory.moment, tilt, twist);
 	memory.normal = normal;
-	const Vector<V> slide = dt * acrossNormal(motion.velocity, normal), bend = dt * acrossNormal(motion.spinDifference, normal);
-	return {overlap, slide, bend};
 }
 
 } // namespace hexmembrane
