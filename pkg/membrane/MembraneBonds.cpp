@@ -2,7 +2,7 @@
 #include "MembraneBonds.hpp"
 
 #include "GatherBodies.hpp"
-#include "kernels/base/Check.hpp"
+#include "base/NamedFields.hpp"
 #include "kernels/membrane/LatticeConstants.hpp"
 #include "kernels/membrane/MembraneTension.hpp"
 
@@ -30,11 +30,12 @@ hexmembrane::BondLaw MembraneBonds::law() const
 	if (sheet) {
 		hexmembrane::requirePositive("MembraneBonds.young", young, "Pa");
 		hexmembrane::requirePositive("MembraneBonds.thickness", thickness, "m");
-		const auto springs = hexmembrane::bondsFromSheet({young * thickness, poisson});
+		const auto springs = named("MembraneBonds", {{"stretch", "young * thickness"}},
+		                           [this] { return hexmembrane::bondsFromSheet({young * thickness, poisson}); });
 		l.kn = springs.normal;
 		l.ks = springs.shear;
 	}
-	l.check();
+	named("MembraneBonds", {}, [&] { l.check(); });
 	return l;
 }
 

@@ -143,6 +143,7 @@ def test_resultsOfStressOnlyWithStress(packing):
     [
         ({"stress": -1.0}, "CylinderPacking.stress = -1"),
         ({"stress": float("nan")}, "CylinderPacking.stress = nan"),
+        ({"stress": 2e5}, r"CylinderPacking.stress = 200000: .* at most 0.01 of the contact modulus, 1e\+07 Pa"),
         ({"young": float("nan")}, "CylinderPacking.young = nan: not given"),
         ({"friction": float("nan")}, "CylinderPacking.friction = nan: not given"),
         ({"stiffnessRatio": 0.0}, "CylinderPacking.stiffnessRatio = 0"),

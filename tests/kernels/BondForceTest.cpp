@@ -241,9 +241,9 @@ TEST(BondForce, threadsDoNotChangeABit)
 
 TEST(BondForce, badLawIsNamed)
 {
-	EXPECT_COMPLAINT(law(-1).check(), "MembraneBonds.kn = -1");
-	EXPECT_COMPLAINT(law(1, -1).check(), "MembraneBonds.ks");
-	EXPECT_COMPLAINT(law(1, 0, 0).check(), "MembraneBonds.tensileStrength");
-	EXPECT_COMPLAINT(law(1, 1, inf, std::nan("")).check(), "MembraneBonds.shearStrength");
-	EXPECT_COMPLAINT(law(1, 1, inf, inf, 0, true).check(), "MembraneBonds.tensionOnly");
+	EXPECT_COMPLAINT(law(-1).check(), "kn = -1");
+	EXPECT_COMPLAINT(law(1, -1).check(), "ks");
+	EXPECT_COMPLAINT(law(1, 0, 0).check(), "tensileStrength");
+	EXPECT_COMPLAINT(law(1, 1, inf, std::nan("")).check(), "shearStrength");
+	EXPECT_COMPLAINT(law(1, 1, inf, inf, 0, true).check(), "tensionOnly");
 }

@@ -104,14 +104,14 @@ TEST(CellGrid, emptyAndFlatBoxesWork)
 
 TEST(CellGrid, refusesBadInput)
 {
-	EXPECT_COMPLAINT(CellGrid(low, high, 0), "CellGrid.cellSize = 0");
-	EXPECT_COMPLAINT(CellGrid(low, high, NAN), "CellGrid.cellSize");
-	EXPECT_COMPLAINT(CellGrid(high, low, 0.1), "CellGrid.high");
-	EXPECT_COMPLAINT(CellGrid(low, Vec3(1, NAN, 1), 0.1), "CellGrid.high");
+	EXPECT_COMPLAINT(CellGrid(low, high, 0), "cellSize = 0");
+	EXPECT_COMPLAINT(CellGrid(low, high, NAN), "cellSize");
+	EXPECT_COMPLAINT(CellGrid(high, low, 0.1), "high");
+	EXPECT_COMPLAINT(CellGrid(low, Vec3(1, NAN, 1), 0.1), "high");
 	EXPECT_COMPLAINT(CellGrid(low, high, 1e-4), "cells");
 	CellGrid grid(low, high, 0.5);
-	EXPECT_COMPLAINT(grid.fill({Vec3(0, 0, 0), Vec3(0, NAN, 0)}), "CellGrid.points[1] = nan");
-	EXPECT_COMPLAINT(grid.fill({Vec3(0, 0, INFINITY)}), "CellGrid.points[0] = inf");
+	EXPECT_COMPLAINT(grid.fill({Vec3(0, 0, 0), Vec3(0, NAN, 0)}), "points[1] = nan");
+	EXPECT_COMPLAINT(grid.fill({Vec3(0, 0, INFINITY)}), "points[0] = inf");
 }
 
 TEST(NearPairs, equalsBruteForceAndIsSorted)
@@ -145,7 +145,7 @@ TEST(NearPairs, smallSpheresInALargeBoxCostNoMemory)
 
 TEST(NearPairs, refusesBadInput)
 {
-	EXPECT_COMPLAINT(findNearPairs({Vec3::Zero()}, {1., 2.}, 0, low, high), "findNearPairs.radii");
-	EXPECT_COMPLAINT(findNearPairs({Vec3::Zero()}, {-1.}, 0, low, high), "findNearPairs.radii[0] = -1");
-	EXPECT_COMPLAINT(findNearPairs({Vec3::Zero()}, {1.}, -1, low, high), "findNearPairs.gap");
+	EXPECT_COMPLAINT(findNearPairs({Vec3::Zero()}, {1., 2.}, 0, low, high), "radii");
+	EXPECT_COMPLAINT(findNearPairs({Vec3::Zero()}, {-1.}, 0, low, high), "radii[0] = -1");
+	EXPECT_COMPLAINT(findNearPairs({Vec3::Zero()}, {1.}, -1, low, high), "gap = -1");
 }

@@ -59,8 +59,8 @@ TEST(LatticeConstants, aThirdMeansCentralSprings)
 TEST(LatticeConstants, badInputIsNamed)
 {
 	EXPECT_COMPLAINT(bondsFromSheet({420, 0.5}), "rubber");
-	EXPECT_COMPLAINT(bondsFromSheet({420, -0.1}), "MembraneBonds.poisson");
-	EXPECT_COMPLAINT(bondsFromSheet({-1, 0.3}), "MembraneBonds.young");
-	EXPECT_COMPLAINT(sheetFromBonds({std::nan(""), 0}), "MembraneBonds.kn");
-	EXPECT_COMPLAINT(sheetFromBonds({1, -1}), "MembraneBonds.ks");
+	EXPECT_COMPLAINT(bondsFromSheet({420, -0.1}), "poisson = -0.1");
+	EXPECT_COMPLAINT(bondsFromSheet({-1, 0.3}), "stretch = -1");
+	EXPECT_COMPLAINT(sheetFromBonds({std::nan(""), 0}), "normal = nan");
+	EXPECT_COMPLAINT(sheetFromBonds({1, -1}), "shear = -1");
 }

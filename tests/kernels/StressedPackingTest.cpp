@@ -318,15 +318,15 @@ TEST(StressedPacking, refusesBadInput)
 		change(s);
 		packUnderStress(s);
 	};
-	EXPECT_COMPLAINT(with([](auto& s) { s.packing.porosity = NAN; }), "CylinderPacking.porosity = nan");
-	EXPECT_COMPLAINT(with([](auto& s) { s.packing.porosity = 0.9; }), "CylinderPacking.porosity = 0.9");
-	EXPECT_COMPLAINT(with([](auto& s) { s.packing.radius = -1; }), "CylinderPacking.radius = -1");
-	EXPECT_COMPLAINT(with([](auto& s) { s.stress = 0; }), "CylinderPacking.stress = 0");
-	EXPECT_COMPLAINT(with([](auto& s) { s.stress = E; }), "CylinderPacking.stress");
-	EXPECT_COMPLAINT(with([](auto& s) { s.law.modulus = NAN; }), "CylinderPacking.young = nan");
-	EXPECT_COMPLAINT(with([](auto& s) { s.law.stiffnessRatio = 0.5; }), "CylinderPacking.stiffnessRatio = 0.5");
-	EXPECT_COMPLAINT(with([](auto& s) { s.law.friction = -0.1; }), "CylinderPacking.friction = -0.1");
-	EXPECT_COMPLAINT(with([](auto& s) { s.law.rollingFriction = -0.1; }), "CylinderPacking.rollingFriction = -0.1");
-	EXPECT_COMPLAINT(with([](auto& s) { s.law.damping = 1; }), "CylinderPacking.damping = 1");
-	EXPECT_COMPLAINT(with([](auto& s) { s.porosityTolerance = 0.5; }), "CylinderPacking.porosityTolerance = 0.5");
+	EXPECT_COMPLAINT(with([](auto& s) { s.packing.porosity = NAN; }), "porosity = nan");
+	EXPECT_COMPLAINT(with([](auto& s) { s.packing.porosity = 0.9; }), "porosity = 0.9");
+	EXPECT_COMPLAINT(with([](auto& s) { s.packing.radius = -1; }), "radius = -1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.stress = 0; }), "stress = 0");
+	EXPECT_COMPLAINT(with([](auto& s) { s.stress = E; }), "stress");
+	EXPECT_COMPLAINT(with([](auto& s) { s.law.modulus = NAN; }), "modulus = nan");
+	EXPECT_COMPLAINT(with([](auto& s) { s.law.stiffnessRatio = 0.5; }), "stiffnessRatio = 0.5");
+	EXPECT_COMPLAINT(with([](auto& s) { s.law.friction = -0.1; }), "friction = -0.1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.law.rollingFriction = -0.1; }), "rollingFriction = -0.1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.law.damping = 1; }), "damping = 1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.porosityTolerance = 0.5; }), "porosityTolerance = 0.5");
 }

@@ -13,16 +13,15 @@ bool BondLaw::central() const { return ks == 0 && std::isinf(tensileStrength) &&
 
 void BondLaw::check() const
 {
-	requirePositive("MembraneBonds.kn", kn, "N/m");
-	requireNonNegative("MembraneBonds.ks", ks, "N/m");
-	requireNonNegative("MembraneBonds.friction", friction, "1");
+	requirePositive("kn", kn, "N/m");
+	requireNonNegative("ks", ks, "N/m");
+	requireNonNegative("friction", friction, "1");
 	const auto strength = [](const char* name, double value) {
-		if (!(value > 0)) reject(std::string("MembraneBonds.") + name, value, "must be positive", "a force in N, or inf for a bond that never breaks");
+		if (!(value > 0)) reject(name, value, "must be positive", "a force in N, or inf for a bond that never breaks");
 	};
 	strength("tensileStrength", tensileStrength);
 	strength("shearStrength", shearStrength);
-	if (tensionOnly && ks > 0)
-		reject("MembraneBonds.tensionOnly", 1, "is for central bonds: a wrinkled sheet has no shear to carry", "ks = 0 (poisson = 1/3)");
+	if (tensionOnly && ks > 0) reject("tensionOnly", 1, "is for central bonds: a wrinkled sheet has no shear to carry", "ks = 0 (Poisson's ratio 1/3)");
 }
 
 BondForce::BondForce(const HexStencil& s, const BondLaw& l) : position(s.perRing, s.rings), force(s.perRing, s.rings), stencil(s), law(l), bondForce(3)

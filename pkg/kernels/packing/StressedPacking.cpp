@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 namespace hexmembrane {
@@ -25,23 +24,22 @@ constexpr long maxSteps = 1000000;
 
 void check(const StressedPackingSpec& s)
 {
-	requireFinite("CylinderPacking.porosity", s.packing.porosity, "1 (a packing under stress needs one)");
-	requirePositive("CylinderPacking.stress", s.stress, "Pa");
-	requirePositive("CylinderPacking.young", s.law.modulus, "Pa");
-	requirePositive("CylinderPacking.stiffnessRatio", s.law.stiffnessRatio, "1 (kn/ks)");
-	requireNonNegative("CylinderPacking.friction", s.law.friction, "1 (tan of the angle)");
-	requireNonNegative("CylinderPacking.rollingFriction", s.law.rollingFriction, "1");
-	requireNonNegative("CylinderPacking.damping", s.law.damping, "1");
-	requirePositive("CylinderPacking.porosityTolerance", s.porosityTolerance, "1");
-	if (s.law.stiffnessRatio < 1)
-		reject("CylinderPacking.stiffnessRatio", s.law.stiffnessRatio, "springs stiffer in shear than along the normal", "kn/ks >= 1");
-	if (s.law.damping >= 1) reject("CylinderPacking.damping", s.law.damping, "would stop everything", "below 1, 0.5 by default");
-	if (s.porosityTolerance >= 0.1) reject("CylinderPacking.porosityTolerance", s.porosityTolerance, "no tolerance of a porosity", "e.g. 0.001");
+	requireFinite("porosity", s.packing.porosity, "1 (a packing under stress needs one)");
+	requirePositive("stress", s.stress, "Pa");
+	requirePositive("modulus", s.law.modulus, "Pa");
+	requirePositive("stiffnessRatio", s.law.stiffnessRatio, "1 (kn/ks)");
+	requireNonNegative("friction", s.law.friction, "1 (tan of the angle)");
+	requireNonNegative("rollingFriction", s.law.rollingFriction, "1");
+	requireNonNegative("damping", s.law.damping, "1");
+	requirePositive("porosityTolerance", s.porosityTolerance, "1");
+	if (s.law.stiffnessRatio < 1) reject("stiffnessRatio", s.law.stiffnessRatio, "springs stiffer in shear than along the normal", "kn/ks >= 1");
+	if (s.law.damping >= 1) reject("damping", s.law.damping, "would stop everything", "below 1, 0.5 by default");
+	if (s.porosityTolerance >= 0.1) reject("porosityTolerance", s.porosityTolerance, "no tolerance of a porosity", "e.g. 0.001");
 	if (s.stress > 1e-2 * s.law.modulus)
-		reject("CylinderPacking.stress", s.stress, "grains would overlap by more than 1 %",
-		       "at most 0.01 of CylinderPacking.young = " + formatNumber(s.law.modulus));
+		reject("stress", s.stress, "grains would overlap by more than 1 %",
+		       "at most 0.01 of the contact modulus, " + formatNumber(s.law.modulus) + " Pa");
 	if (s.packing.porosity >= loosest)
-		reject("CylinderPacking.porosity", s.packing.porosity, "no packing of spheres that carries stress", "below " + formatNumber(loosest));
+		reject("porosity", s.packing.porosity, "no packing of spheres that carries stress", "below " + formatNumber(loosest));
 }
 
 /// Brings one assembly to size 1 and to the wanted stress.
@@ -103,9 +101,9 @@ private:
 	void count()
 	{
 		if (++made > maxSteps)
-			throw std::runtime_error("CylinderPacking.stress = " + formatNumber(wanted) + ": no equilibrium after " + std::to_string(maxSteps) +
-			                         " steps, the stress is " + formatNumber(grains.meanStress()) +
-			                         " Pa; fix: a higher stress, more damping, or another porosity");
+			fail("stress", wanted,
+			     "no equilibrium after " + std::to_string(maxSteps) + " steps, the stress is " + formatNumber(grains.meanStress()) + " Pa",
+			     "a higher stress, another seed, or another porosity");
 	}
 
 	double wanted, final, rolling, friction, growth, loss;
@@ -117,12 +115,13 @@ private:
 {
 	// another seed or a neighbouring porosity may end a little off what this one reached, a loose one more than a dense one
 	const double advised = tooDense ? std::ceil((reached + 0.002) * 1000) / 1000 : std::floor((reached - 0.01) * 1000) / 1000;
-	throw std::runtime_error("CylinderPacking.porosity = " + formatNumber(spec.packing.porosity) + ": " + (tooDense ? "denser" : "looser") +
-	                         " than these " + std::to_string(spec.packing.radii.size()) + " grains get at " + formatNumber(spec.stress) +
-	                         " Pa with friction " + formatNumber(spec.law.friction) +
-	                         (spec.law.rollingFriction > 0 ? " and rolling friction " + formatNumber(spec.law.rollingFriction) : "") + ", " +
-	                         formatNumber(reached) + " was reached; fix: a porosity of at " + (tooDense ? "least " : "most ") + formatNumber(advised) +
-	                         (tooDense ? "" : ", or more friction or rolling friction"));
+	fail("porosity", spec.packing.porosity,
+	     std::string(tooDense ? "denser" : "looser") + " than these " + std::to_string(spec.packing.radii.size()) + " grains get at " +
+	             formatNumber(spec.stress) + " Pa with friction " + formatNumber(spec.law.friction) +
+	             (spec.law.rollingFriction > 0 ? " and rolling friction " + formatNumber(spec.law.rollingFriction) : "") + ", " + formatNumber(reached) +
+	             " was reached",
+	     std::string("a porosity of at ") + (tooDense ? "least " : "most ") + formatNumber(advised) +
+	             (tooDense ? "" : ", or more friction or rolling friction"));
 }
 
 } // namespace

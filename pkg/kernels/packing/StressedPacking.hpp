@@ -33,7 +33,7 @@ struct StressedPacking : SpherePacking {
 /// Reachable is what lies between the packing without friction (dense) and the one that keeps its friction throughout (loose; rolling friction holds looser
 /// ones); anything beyond is an
 /// error that names the porosity reached. Measured ranges: pkg/specimen/README.md.
-/// \throws std::invalid_argument for bad input, std::runtime_error for a porosity out of reach or no equilibrium
+/// \throws FieldError for bad input, FieldFailure for a porosity out of reach or no equilibrium
 StressedPacking packUnderStress(const StressedPackingSpec& spec);
 
 } // namespace hexmembrane
