@@ -48,20 +48,18 @@ void BondForce::setRestLengths(BondState& state) const
 
 namespace {
 
-/// Spring forces on the first particles of a row of bonds. A bond of zero length has no direction: its force is 0 (the far end of the rows is
-/// never that close in a scene that the integrator can hold).
+/// Spring forces on the first particles of a row of bonds. A bond of zero length has no direction: its force is 0.
 template <bool tensionOnly>
 inline void springs(int n, const double* __restrict ax, const double* __restrict ay, const double* __restrict az, const double* __restrict bx,
                     const double* __restrict by, const double* __restrict bz, const double* __restrict rest, double kn, double* __restrict fx,
                     double* __restrict fy, double* __restrict fz)
 {
-	constexpr double tiny = std::numeric_limits<double>::min();
 #pragma omp simd
 	for (int i = 0; i < n; ++i) {
 		const double dx = bx[i] - ax[i], dy = by[i] - ay[i], dz = bz[i] - az[i];
 		const double d = std::sqrt(dx * dx + dy * dy + dz * dz);
 		const double extension = tensionOnly ? std::max(d - rest[i], 0.) : d - rest[i];
-		const double c = kn * extension / std::max(d, tiny);
+		const double c = d > 0 ? kn * extension / d : 0;
 		fx[i] = c * dx;
 		fy[i] = c * dy;
 		fz[i] = c * dz;
