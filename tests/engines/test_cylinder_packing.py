@@ -161,6 +161,19 @@ def test_porosityOutOfReachUnderStress():
         made(porosity=0.5, stress=5e4, young=1e7, friction=0.4)
 
 
+def test_withoutFrictionItHasADensityOfItsOwn():
+    own = made(porosity=float("nan"), stress=2e4, young=1e7, friction=0.0)
+    assert (2 * own.radialStress + own.axialStress) / 3 == pytest.approx(2e4, rel=0.03) and own.frictionReached == 0
+    solid = 4 / 3 * math.pi * sum(r**3 for r in own.sizes)
+    assert 1 - solid / (math.pi * RADIUS**2 * HEIGHT) == pytest.approx(own.porosityReached, abs=1e-12)
+    # another one is refused, with what helps: tried here
+    with pytest.raises(RuntimeError, match=r"CylinderPacking.porosity = 0.46: .*%.6g was reached; fix: friction, no stress, or no porosity \(nan" % own.porosityReached):
+        made(porosity=0.46, stress=2e4, young=1e7, friction=0.0)
+    assert made(porosity=0.46, stress=2e4, young=1e7, friction=0.4).porosityReached == pytest.approx(0.46, abs=1e-3)
+    assert made(porosity=0.46, friction=0.0).porosityReached == pytest.approx(0.46)
+    assert made(porosity=own.porosityReached, stress=2e4, young=1e7, friction=0.0).porosityReached == own.porosityReached
+
+
 def test_bodiesOfThePackingFeelNoForce(O, packing):
     O.materials.append(yade.FrictMat(young=1e8, label="grain"))
     O.bodies.append([utils.sphere(c, r, material="grain") for c, r in zip(packing.centres, packing.sizes)])

@@ -11,8 +11,8 @@ namespace hexmembrane {
 
 namespace {
 
-/// How much looser than wanted it starts, and the loosest start.
-constexpr double looser = 0.08, loosest = 0.65;
+/// How much looser than wanted it starts, the densest and the loosest start, and the start of grains without friction. All of them are far from jamming.
+constexpr double looser = 0.08, densestStart = 0.45, loosest = 0.65, smoothStart = 0.55;
 /// Inertial number of the growth; share of the friction lost in the time that a grain needs to move its own size under the stress.
 constexpr double inertialNumber = 1e-3, frictionLoss = 0.05;
 /// Friction below this is none.
@@ -22,9 +22,10 @@ constexpr double stressTolerance = 0.03, equilibrium = 1e-3;
 constexpr int lookEvery = 100, looks = 3;
 constexpr long maxSteps = 1000000;
 
+bool smooth(const StressedPackingSpec& s) { return s.law.friction < noFriction; }
+
 void check(const StressedPackingSpec& s)
 {
-	requireFinite("porosity", s.packing.porosity, "1 (a packing under stress needs one)");
 	requirePositive("stress", s.stress, "Pa");
 	requirePositive("modulus", s.law.modulus, "Pa");
 	requirePositive("stiffnessRatio", s.law.stiffnessRatio, "1 (kn/ks)");
@@ -38,6 +39,9 @@ void check(const StressedPackingSpec& s)
 	if (s.stress > 1e-2 * s.law.modulus)
 		reject("stress", s.stress, "grains would overlap by more than 1 %",
 		       "at most 0.01 of the contact modulus, " + formatNumber(s.law.modulus) + " Pa");
+	if (std::isnan(s.packing.porosity) && smooth(s)) return;
+	requireFinite("porosity", s.packing.porosity, "1 (a packing under stress needs one)");
+	if (!(s.packing.porosity > 0)) reject("porosity", s.packing.porosity, "outside 0 .. 1", "e.g. 0.40");
 	if (s.packing.porosity >= loosest)
 		reject("porosity", s.packing.porosity, "no packing of spheres that carries stress", "below " + formatNumber(loosest));
 }
@@ -124,19 +128,31 @@ private:
 	             (tooDense ? "" : ", or more friction or rolling friction"));
 }
 
+void requirePorosity(const StressedPackingSpec& spec, bool densest, double reached)
+{
+	const double excess = reached - spec.packing.porosity;
+	if (smooth(spec) && std::abs(excess) > spec.porosityTolerance) // false for a porosity that is not asked for
+		fail("porosity", spec.packing.porosity,
+		     "grains without friction have one porosity at this stress, whatever is asked for; " + formatNumber(reached) + " was reached",
+		     "friction, no stress, or no porosity (nan: the packing's own)");
+	if (densest || excess > spec.porosityTolerance) refuse(spec, true, reached);
+	if (excess < -spec.porosityTolerance) refuse(spec, false, reached);
+}
+
 } // namespace
 
 StressedPacking packUnderStress(const StressedPackingSpec& spec)
 {
 	check(spec);
 	SpherePackingSpec loose = spec.packing;
-	loose.porosity = std::min(spec.packing.porosity + looser, loosest);
+	loose.porosity = smooth(spec) ? smoothStart : std::clamp(spec.packing.porosity + looser, densestStart, loosest);
 	loose.even = 0;
 	const SpherePacking start = packSpheres(loose);
-	const double size = std::cbrt((1 - spec.packing.porosity) / (1 - start.porosity));
+	// grains without friction grow until they carry the stress: there is no other size to bring them to, and no friction to lower
+	const double size = smooth(spec) ? 1 : std::cbrt((1 - spec.packing.porosity) / (1 - start.porosity));
 
 	Compactor compactor(spec, start, size);
-	const bool reached = compactor.compress();
+	const bool densest = !smooth(spec) && !compactor.compress();
 	compactor.settle();
 	const GrainAssembly& grains = compactor.assembly();
 
@@ -150,8 +166,7 @@ StressedPacking packUnderStress(const StressedPackingSpec& spec)
 		mean += r / double(out.radii.size());
 	}
 	out.porosity = packingPorosity(out.radii, spec.packing.radius, spec.packing.height);
-	if (!reached || out.porosity > spec.packing.porosity + spec.porosityTolerance) refuse(spec, true, out.porosity);
-	if (out.porosity < spec.packing.porosity - spec.porosityTolerance) refuse(spec, false, out.porosity);
+	requirePorosity(spec, densest, out.porosity);
 	out.maxOverlap = largestOverlap(out.centres, out.radii, spec.packing.radius, spec.packing.height) / mean;
 	out.shakesUsed = start.shakesUsed;
 	out.steps = start.steps + compactor.steps();
