@@ -187,7 +187,7 @@ Real MembraneBonds::criticalTimeStep() const
 	if (!membrane) throw std::runtime_error("MembraneBonds.membrane = None: no membrane to act on; fix: MembraneBonds(membrane=HexMembrane(...))");
 	membrane->requireGenerated("MembraneBonds.criticalTimeStep");
 	const Real mass = membrane->body(*Omega::instance().getScene(), 0, "MembraneBonds.criticalTimeStep")->state->mass;
-	return 2 * math::sqrt(mass / (6 * (l.kn + l.ks)));
+	return named("MembraneBonds", {}, [&] { return hexmembrane::criticalStepOfBonds({l.kn, l.ks}, mass); });
 }
 
 int MembraneBonds::brokenCount() const { return static_cast<int>(std::count(broken.begin(), broken.end(), 1)); }

@@ -3,14 +3,24 @@
 
 #include "kernels/base/Check.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hexmembrane {
 
-SheetConstants sheetFromBonds(const BondStiffness& b)
+namespace {
+
+void check(const BondStiffness& b)
 {
 	requirePositive("normal", b.normal, "N/m");
 	requireNonNegative("shear", b.shear, "N/m");
+}
+
+} // namespace
+
+SheetConstants sheetFromBonds(const BondStiffness& b)
+{
+	check(b);
 	const double sum = 3 * b.normal + b.shear;
 	return {2 * std::sqrt(3.) * b.normal * (b.normal + b.shear) / sum, (b.normal - b.shear) / sum};
 }
@@ -27,6 +37,13 @@ BondStiffness bondsFromSheet(const SheetConstants& s)
 	const double kn = s.stretch / (std::sqrt(3.) * (1 - s.poisson));
 	const double ks = kn * (1 - 3 * s.poisson) / (1 + s.poisson);
 	return {kn, s.poisson > third - eps ? 0. : ks};
+}
+
+double criticalStepOfBonds(const BondStiffness& b, double mass)
+{
+	check(b);
+	requirePositive("mass", mass, "kg");
+	return 2 * std::sqrt(mass / std::max(6 * b.normal + 2 * b.shear, 30 * b.shear));
 }
 
 } // namespace hexmembrane
