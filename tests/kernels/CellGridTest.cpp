@@ -77,6 +77,22 @@ TEST(CellGrid, findsAllPointsNearAPlace)
 	}
 }
 
+TEST(CellGrid, nothingIsNearAPlaceThatIsNoPlace)
+{
+	CellGrid grid(low, high, 0.4), flat(low, Vec3(high[0], high[1], low[2]), 0.4);
+	grid.fill(scatter(500, 11));
+	flat.fill(scatter(500, 11));
+	for (const double wrong : {double(NAN), double(INFINITY), -double(INFINITY)})
+		for (int axis = 0; axis < 3; ++axis) {
+			Vec3 place = 0.5 * (low + high);
+			place[axis] = wrong;
+			int visits = 0;
+			grid.forEachNear(place, [&](int) { ++visits; });
+			flat.forEachNear(place, [&](int) { ++visits; });
+			EXPECT_EQ(visits, 0) << wrong << " on axis " << axis;
+		}
+}
+
 TEST(CellGrid, ordersEveryPointOnceAndForgetsThoseOfBefore)
 {
 	CellGrid grid(low, high, 0.5);
