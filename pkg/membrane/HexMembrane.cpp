@@ -2,11 +2,10 @@
 #include "HexMembrane.hpp"
 
 #include "GatherBodies.hpp"
-#include "kernels/base/Check.hpp"
+#include "base/NamedFields.hpp"
 #include "kernels/membrane/MembraneTension.hpp"
 #include "kernels/membrane/PressureForce.hpp"
 #include "kernels/membrane/RadialForce.hpp"
-#include "kernels/membrane/SurfaceMeasure.hpp"
 
 #include <core/InteractionContainer.hpp>
 #include <pkg/common/NormShearPhys.hpp>
@@ -30,11 +29,18 @@ bool innerFromName(const string& surface)
 	return surface == "inner";
 }
 
+hexmembrane::Placement placementFromName(const string& placement)
+{
+	if (placement == "outside") return hexmembrane::Placement::outside;
+	if (placement == "centred") return hexmembrane::Placement::centred;
+	hexmembrane::reject("HexMembrane.placement", "'" + placement + "'", "unknown", "'outside' or 'centred'");
+}
+
 } // namespace
 
 hexmembrane::HexLatticeSpec HexMembrane::spec() const
 {
-	return {specimenRadius, specimenHeight, particleRadius, hexmembrane::placementFromName(placement), oRingRows, platenRows};
+	return {specimenRadius, specimenHeight, particleRadius, placementFromName(placement), oRingRows, platenRows};
 }
 
 void HexMembrane::checkGrain(Real radius) const
@@ -54,7 +60,7 @@ vector<Body::id_t> HexMembrane::generate()
 	if (!ids.empty())
 		hexmembrane::reject("HexMembrane.ids", static_cast<int>(ids.size()), "the membrane has been generated already",
 		                    "make a new HexMembrane for a second one");
-	const hexmembrane::HexLattice lattice = hexmembrane::makeHexLattice(spec());
+	const hexmembrane::HexLattice lattice = named("HexMembrane", {}, [this] { return hexmembrane::makeHexLattice(spec()); });
 	checkGrain(lattice.sphereRadius);
 	for (int a = 0; a < 3; ++a) hexmembrane::requireFinite("HexMembrane.origin", origin[a], "m");
 	const shared_ptr<Scene>& scene = Omega::instance().getScene();
@@ -206,16 +212,19 @@ vector<Vector3r> HexMembrane::surfacePoints(const string& surface) const
 	return x;
 }
 
-Real HexMembrane::surfaceArea(const string& surface, Real zBottom, Real zTop) const
+hexmembrane::TubeSlab HexMembrane::slab(const string& surface, Real zBottom, Real zTop, const char* argument) const
 {
 	constexpr Real inf = std::numeric_limits<Real>::infinity();
-	return hexmembrane::measureTube(triangleList(), surfacePoints(surface), math::isnan(zBottom) ? -inf : zBottom, math::isnan(zTop) ? inf : zTop).area;
+	const vector<Vector3r> x = surfacePoints(surface);
+	const Real low = math::isnan(zBottom) ? -inf : zBottom, high = math::isnan(zTop) ? inf : zTop;
+	return named("HexMembrane", {{"zBottom", argument}}, [&] { return hexmembrane::measureTube(triangleList(), x, low, high); });
 }
+
+Real HexMembrane::surfaceArea(const string& surface, Real zBottom, Real zTop) const { return slab(surface, zBottom, zTop, "surfaceArea: zBottom").area; }
 
 Real HexMembrane::enclosedVolume(Real zBottom, Real zTop, const string& surface) const
 {
-	constexpr Real inf = std::numeric_limits<Real>::infinity();
-	return hexmembrane::measureTube(triangleList(), surfacePoints(surface), math::isnan(zBottom) ? -inf : zBottom, math::isnan(zTop) ? inf : zTop).volume;
+	return slab(surface, zBottom, zTop, "enclosedVolume: zBottom").volume;
 }
 
 Real HexMembrane::meanRadius(Real zBottom, Real zTop, const string& surface) const

@@ -8,6 +8,7 @@
 
 #include "kernels/membrane/HexLattice.hpp"
 #include "kernels/membrane/PaddedRings.hpp"
+#include "kernels/membrane/SurfaceMeasure.hpp"
 
 namespace yade {
 
@@ -54,6 +55,8 @@ private:
 	void checkGrain(Real sphereRadius) const;
 	//! Centres, or the points one radius further in along the vertex normals.
 	vector<Vector3r> surfacePoints(const string& surface) const;
+	//! Area and volume of that surface between two heights (NaN: to the end rings); `argument` is the lower one's name in a complaint.
+	hexmembrane::TubeSlab slab(const string& surface, Real zBottom, Real zTop, const char* argument) const;
 	//! Sum of the normal contact forces of each particle on all that is not membrane (N).
 	vector<Vector3r> contactForces(const Scene& scene, const string& who) const;
 

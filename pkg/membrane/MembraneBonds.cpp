@@ -2,7 +2,7 @@
 #include "MembraneBonds.hpp"
 
 #include "GatherBodies.hpp"
-#include "kernels/base/Check.hpp"
+#include "base/NamedFields.hpp"
 #include "kernels/membrane/LatticeConstants.hpp"
 #include "kernels/membrane/MembraneTension.hpp"
 
@@ -30,11 +30,12 @@ hexmembrane::BondLaw MembraneBonds::law() const
 	if (sheet) {
 		hexmembrane::requirePositive("MembraneBonds.young", young, "Pa");
 		hexmembrane::requirePositive("MembraneBonds.thickness", thickness, "m");
-		const auto springs = hexmembrane::bondsFromSheet({young * thickness, poisson});
+		const auto springs = named("MembraneBonds", {{"stretch", "young * thickness"}},
+		                           [this] { return hexmembrane::bondsFromSheet({young * thickness, poisson}); });
 		l.kn = springs.normal;
 		l.ks = springs.shear;
 	}
-	l.check();
+	named("MembraneBonds", {}, [&] { l.check(); });
 	return l;
 }
 
@@ -186,7 +187,7 @@ Real MembraneBonds::criticalTimeStep() const
 	if (!membrane) throw std::runtime_error("MembraneBonds.membrane = None: no membrane to act on; fix: MembraneBonds(membrane=HexMembrane(...))");
 	membrane->requireGenerated("MembraneBonds.criticalTimeStep");
 	const Real mass = membrane->body(*Omega::instance().getScene(), 0, "MembraneBonds.criticalTimeStep")->state->mass;
-	return 2 * math::sqrt(mass / (6 * (l.kn + l.ks)));
+	return named("MembraneBonds", {}, [&] { return hexmembrane::criticalStepOfBonds({l.kn, l.ks}, mass); });
 }
 
 int MembraneBonds::brokenCount() const { return static_cast<int>(std::count(broken.begin(), broken.end(), 1)); }

@@ -2,7 +2,7 @@
 #include "MembranePressure.hpp"
 
 #include "GatherBodies.hpp"
-#include "kernels/base/Check.hpp"
+#include "base/NamedFields.hpp"
 #include "kernels/base/IntegralController.hpp"
 
 namespace yade {
@@ -22,7 +22,7 @@ void MembranePressure::prepareMembrane()
 		for (int i = 0; i < membrane->perRing; ++i) loaded.push_back(k * membrane->perRing + i);
 	}
 	const Real offset = surface == "centre" ? 0. : math::isnan(surfaceOffset) ? membrane->sphereRadius : surfaceOffset;
-	tube.reset(new hexmembrane::TubePressure(membrane->stencil(), first, last, offset));
+	named("MembranePressure", {{"offset", "surfaceOffset"}}, [&] { tube.reset(new hexmembrane::TubePressure(membrane->stencil(), first, last, offset)); });
 }
 
 void MembranePressure::prepareMesh()
@@ -33,8 +33,11 @@ void MembranePressure::prepareMesh()
 		                    "surfaceOffset in m, or surface='centre'");
 	vector<std::array<int, 3>> list;
 	for (const auto& t : triangles) list.push_back({t[0], t[1], t[2]});
+	named("MembranePressure", {{"offset", "surfaceOffset"}}, [&] {
+		hexmembrane::TriangleMesh surfaceMesh(static_cast<int>(ids.size()), std::move(list));
+		mesh = hexmembrane::PressureForce(std::move(surfaceMesh), surface == "centre" ? 0. : surfaceOffset);
+	});
 	tube.reset();
-	mesh = hexmembrane::PressureForce(hexmembrane::TriangleMesh(static_cast<int>(ids.size()), std::move(list)), surface == "centre" ? 0. : surfaceOffset);
 	vertexIds = ids;
 	loaded.resize(ids.size());
 	for (size_t i = 0; i < ids.size(); ++i) loaded[i] = static_cast<int>(i);

@@ -4,12 +4,22 @@
 #include "GatherBodies.hpp"
 #include "kernels/base/Check.hpp"
 #include "kernels/base/IntegralController.hpp"
-#include "kernels/membrane/RadialForce.hpp"
 #include "kernels/base/TrapezoidalWork.hpp"
 
 namespace yade {
 
 YADE_PLUGIN((MembraneRadialServo));
+
+namespace {
+
+hexmembrane::AreaRule areaRuleFromName(const string& name)
+{
+	if (name == "tributary") return hexmembrane::AreaRule::tributary;
+	if (name == "cube") return hexmembrane::AreaRule::cube;
+	hexmembrane::reject("MembraneRadialServo.areaRule", "'" + name + "'", "unknown", "'tributary' or 'cube'");
+}
+
+} // namespace
 
 void MembraneRadialServo::prepare()
 {
@@ -22,6 +32,7 @@ void MembraneRadialServo::prepare()
 		hexmembrane::requirePositive("MembraneRadialServo.maxFactor", maxFactor, "1");
 		if (iterPeriod < 1) hexmembrane::reject("MembraneRadialServo.iterPeriod", iterPeriod, "must be at least one step", "50, say");
 	}
+	rule = areaRuleFromName(areaRule);
 	rows.clear();
 	for (int k = 0; k < membrane->rings; ++k)
 		if (membrane->groupOfRing(k) == 2) rows.push_back(k);
@@ -39,7 +50,6 @@ void MembraneRadialServo::correct(Real measured)
 void MembraneRadialServo::computeForces(const hexmembrane::PaddedRings& x, const std::function<Real()>& transmittedNow)
 {
 	if (gain > 0 && scene->iter % iterPeriod == 0) correct(transmittedNow());
-	const auto rule = hexmembrane::areaRuleFromName(areaRule);
 	const auto tube = membrane->stencil();
 	if (!force.fits(tube.perRing, tube.rings)) force = hexmembrane::PaddedRings(tube.perRing, tube.rings);
 	area = 0;

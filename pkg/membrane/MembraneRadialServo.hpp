@@ -3,6 +3,7 @@
 
 #include "HexMembrane.hpp"
 #include "kernels/membrane/PaddedRings.hpp"
+#include "kernels/membrane/RadialForce.hpp"
 
 #include <core/GlobalEngine.hpp>
 
@@ -30,6 +31,7 @@ private:
 	void correct(Real measured);
 
 	hexmembrane::PaddedRings positions; //!< all particles
+	hexmembrane::AreaRule rule = hexmembrane::AreaRule::tributary;
 	int energyIndex = -1;
 
 	// clang-format off

@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "CylinderPacking.hpp"
 
-#include "kernels/base/Check.hpp"
+#include "base/NamedFields.hpp"
 #include "kernels/packing/StressedPacking.hpp"
 
 #include <stdexcept>
@@ -42,10 +42,12 @@ void CylinderPacking::generate()
 	under.porosityTolerance = static_cast<double>(porosityTolerance);
 
 	hexmembrane::StressedPacking made;
-	if (stress > 0)
-		made = hexmembrane::packUnderStress(under);
-	else
-		static_cast<hexmembrane::SpherePacking&>(made) = hexmembrane::packSpheres(spec);
+	named("CylinderPacking", {{"modulus", "young"}}, [&] {
+		if (stress > 0)
+			made = hexmembrane::packUnderStress(under);
+		else
+			static_cast<hexmembrane::SpherePacking&>(made) = hexmembrane::packSpheres(spec);
+	});
 	packedCentres.clear();
 	packedCentres.reserve(made.centres.size());
 	for (const auto& c : made.centres) packedCentres.push_back(origin + Vector3r(c[0], c[1], c[2]));

@@ -42,6 +42,7 @@ public:
 		"Without a stress there are no contacts afterwards (no overlap, no force): a consolidation makes them.\n\n"
 		"With a :yref:`stress<CylinderPacking.stress>` the packing starts looser and its grains grow inside fixed smooth walls, as linear frictional spheres, slowly. Where the stress exceeds the wanted one, friction is lowered until they give way; at the end it has its own value again. "
 		"So any porosity between the packing without friction and the one that keeps its friction is reached at the wanted stress (mean within 3 %, porosity within :yref:`porosityTolerance<CylinderPacking.porosityTolerance>`, unbalanced ratio 1e-3); beyond is a RuntimeError that names the porosity reached. "
+		"Without friction there is one porosity at a stress, which a porosity of NaN takes as it comes. "
 		"With 7,000 grains of a uniform sand and a friction of 0.4 that is 0.384 to 0.432. Shear forces of the contacts are not handed over: without them the stress stays within a few percent.\n\n"
 		"Errors: ValueError for bad input, before anything is changed; RuntimeError for a porosity out of reach and for results read before :yref:`generate<CylinderPacking.generate>`.\n\n"
 		"Example: ``p = CylinderPacking(radius=.02, height=.08, radii=[.0017]*2000, porosity=.42, seed=7); p.generate(); O.bodies.append([utils.sphere(c, r) for c, r in zip(p.centres, p.sizes)])``",
@@ -49,7 +50,7 @@ public:
 		((Real,height,NaN,,"Height of the cylinder [m]. Required."))
 		((Vector3r,origin,Vector3r::Zero(),,"Centre of the cylinder's bottom face [m]."))
 		((vector<Real>,radii,,,"Radii of the spheres [m], in any order. Required. With a porosity, only their proportions count."))
-		((Real,porosity,NaN,,"Porosity wanted, 0 to 1 [-]: all radii are multiplied by one factor, :yref:`scale<CylinderPacking.scale>`, to meet it exactly. NaN: radii are kept as they are."))
+		((Real,porosity,NaN,,"Porosity wanted, 0 to 1 [-]: all radii are multiplied by one factor, :yref:`scale<CylinderPacking.scale>`, to meet it exactly. NaN: radii are kept as they are; with a stress, which needs a porosity, the packing's own where there is no friction."))
 		((long,seed,1,,"Seed of the random numbers [-], >= 0."))
 		((Real,tolerance,1e-4,,"Room left round touching spheres over the mean radius [-], in (0, 0.01]. Smaller is slower in dense packings."))
 		((int,shakes,8,,"How often a jammed packing is loosened, shaken and grown again before it is given up [-], >= 0."))

@@ -143,6 +143,7 @@ def test_resultsOfStressOnlyWithStress(packing):
     [
         ({"stress": -1.0}, "CylinderPacking.stress = -1"),
         ({"stress": float("nan")}, "CylinderPacking.stress = nan"),
+        ({"stress": 2e5}, r"CylinderPacking.stress = 200000: .* at most 0.01 of the contact modulus, 1e\+07 Pa"),
         ({"young": float("nan")}, "CylinderPacking.young = nan: not given"),
         ({"friction": float("nan")}, "CylinderPacking.friction = nan: not given"),
         ({"stiffnessRatio": 0.0}, "CylinderPacking.stiffnessRatio = 0"),
@@ -158,6 +159,19 @@ def test_badInputUnderStress(change, message):
 def test_porosityOutOfReachUnderStress():
     with pytest.raises(RuntimeError, match=r"CylinderPacking.porosity = 0.5: looser .* a porosity of at most 0\.4"):
         made(porosity=0.5, stress=5e4, young=1e7, friction=0.4)
+
+
+def test_withoutFrictionItHasADensityOfItsOwn():
+    own = made(porosity=float("nan"), stress=2e4, young=1e7, friction=0.0)
+    assert (2 * own.radialStress + own.axialStress) / 3 == pytest.approx(2e4, rel=0.03) and own.frictionReached == 0
+    solid = 4 / 3 * math.pi * sum(r**3 for r in own.sizes)
+    assert 1 - solid / (math.pi * RADIUS**2 * HEIGHT) == pytest.approx(own.porosityReached, abs=1e-12)
+    # another one is refused, with what helps: tried here
+    with pytest.raises(RuntimeError, match=r"CylinderPacking.porosity = 0.46: .*%.6g was reached; fix: friction, no stress, or no porosity \(nan" % own.porosityReached):
+        made(porosity=0.46, stress=2e4, young=1e7, friction=0.0)
+    assert made(porosity=0.46, stress=2e4, young=1e7, friction=0.4).porosityReached == pytest.approx(0.46, abs=1e-3)
+    assert made(porosity=0.46, friction=0.0).porosityReached == pytest.approx(0.46)
+    assert made(porosity=own.porosityReached, stress=2e4, young=1e7, friction=0.0).porosityReached == own.porosityReached
 
 
 def test_bodiesOfThePackingFeelNoForce(O, packing):

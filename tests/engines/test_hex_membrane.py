@@ -119,6 +119,13 @@ def test_generateTwiceIsRefused(O):
 	assert len(O.bodies) == count
 
 
+def test_planesInTheWrongOrderAreNamed(O):
+	m = makeMembrane()
+	for method in ("surfaceArea", "enclosedVolume"):
+		with pytest.raises(ValueError, match=r"HexMembrane.%s: zBottom = 0.02: not below zTop = 0.01; fix:" % method):
+			getattr(m, method)(zBottom=0.02, zTop=0.01)
+
+
 def test_nothingIsReadBeforeGenerate(O):
 	from yade.wrapper import HexMembrane
 

@@ -215,12 +215,28 @@ TEST(BondForce, tensionOnlyCarriesNoCompression)
 	for (const auto& f : unload(pair.fast.force, pair.tube)) ASSERT_EQ(f.norm(), 0);
 }
 
+// A bond without a direction has no force. From kn L0 = 4 N on, a force over the smallest number there is would not be finite; the last kn is 200 N.
 TEST(BondForce, coincidentParticlesGiveNoNan)
 {
-	Pair pair(law(346));
-	pair.p.position[1] = pair.p.position[0];
-	pair.step(0);
-	EXPECT_LT(relativeDifference(unload(pair.fast.force, pair.tube), pair.p.force), 1e-12);
+	for (const double kn : {346., 5e4})
+		for (const double ks : {0., 100.}) {
+			Pair pair(law(kn, ks));
+			pair.p.position[1] = pair.p.position[0];
+			pair.step(0);
+			EXPECT_LT(relativeDifference(unload(pair.fast.force, pair.tube), pair.p.force), 1e-12) << "kn " << kn << ", ks " << ks;
+		}
+}
+
+// Nearer than the square root of the smallest number: distances underflow.
+TEST(BondForce, almostCoincidentParticlesGiveNoNan)
+{
+	for (const double gap : {1e-300, 1e-161, 1e-150, 1e-20}) {
+		Pair pair(law(5e4));
+		pair.p.position[0] = Vec3::Zero();
+		pair.p.position[1] = Vec3(gap, 0, 0);
+		pair.step(0);
+		for (const Vec3& f : unload(pair.fast.force, pair.tube)) ASSERT_TRUE(f.allFinite()) << "gap " << gap;
+	}
 }
 
 TEST(BondForce, threadsDoNotChangeABit)
@@ -241,9 +257,9 @@ TEST(BondForce, threadsDoNotChangeABit)
 
 TEST(BondForce, badLawIsNamed)
 {
-	EXPECT_COMPLAINT(law(-1).check(), "MembraneBonds.kn = -1");
-	EXPECT_COMPLAINT(law(1, -1).check(), "MembraneBonds.ks");
-	EXPECT_COMPLAINT(law(1, 0, 0).check(), "MembraneBonds.tensileStrength");
-	EXPECT_COMPLAINT(law(1, 1, inf, std::nan("")).check(), "MembraneBonds.shearStrength");
-	EXPECT_COMPLAINT(law(1, 1, inf, inf, 0, true).check(), "MembraneBonds.tensionOnly");
+	EXPECT_COMPLAINT(law(-1).check(), "kn = -1");
+	EXPECT_COMPLAINT(law(1, -1).check(), "ks = -1");
+	EXPECT_COMPLAINT(law(1, 0, 0).check(), "tensileStrength = 0");
+	EXPECT_COMPLAINT(law(1, 1, inf, std::nan("")).check(), "shearStrength = nan");
+	EXPECT_COMPLAINT(law(1, 1, inf, inf, 0, true).check(), "tensionOnly = 1");
 }

@@ -77,6 +77,22 @@ TEST(CellGrid, findsAllPointsNearAPlace)
 	}
 }
 
+TEST(CellGrid, nothingIsNearAPlaceThatIsNoPlace)
+{
+	CellGrid grid(low, high, 0.4), flat(low, Vec3(high[0], high[1], low[2]), 0.4);
+	grid.fill(scatter(500, 11));
+	flat.fill(scatter(500, 11));
+	for (const double wrong : {double(NAN), double(INFINITY), -double(INFINITY)})
+		for (int axis = 0; axis < 3; ++axis) {
+			Vec3 place = 0.5 * (low + high);
+			place[axis] = wrong;
+			int visits = 0;
+			grid.forEachNear(place, [&](int) { ++visits; });
+			flat.forEachNear(place, [&](int) { ++visits; });
+			EXPECT_EQ(visits, 0) << wrong << " on axis " << axis;
+		}
+}
+
 TEST(CellGrid, ordersEveryPointOnceAndForgetsThoseOfBefore)
 {
 	CellGrid grid(low, high, 0.5);
@@ -104,14 +120,14 @@ TEST(CellGrid, emptyAndFlatBoxesWork)
 
 TEST(CellGrid, refusesBadInput)
 {
-	EXPECT_COMPLAINT(CellGrid(low, high, 0), "CellGrid.cellSize = 0");
-	EXPECT_COMPLAINT(CellGrid(low, high, NAN), "CellGrid.cellSize");
-	EXPECT_COMPLAINT(CellGrid(high, low, 0.1), "CellGrid.high");
-	EXPECT_COMPLAINT(CellGrid(low, Vec3(1, NAN, 1), 0.1), "CellGrid.high");
+	EXPECT_COMPLAINT(CellGrid(low, high, 0), "cellSize = 0");
+	EXPECT_COMPLAINT(CellGrid(low, high, NAN), "cellSize");
+	EXPECT_COMPLAINT(CellGrid(high, low, 0.1), "high");
+	EXPECT_COMPLAINT(CellGrid(low, Vec3(1, NAN, 1), 0.1), "high");
 	EXPECT_COMPLAINT(CellGrid(low, high, 1e-4), "cells");
 	CellGrid grid(low, high, 0.5);
-	EXPECT_COMPLAINT(grid.fill({Vec3(0, 0, 0), Vec3(0, NAN, 0)}), "CellGrid.points[1] = nan");
-	EXPECT_COMPLAINT(grid.fill({Vec3(0, 0, INFINITY)}), "CellGrid.points[0] = inf");
+	EXPECT_COMPLAINT(grid.fill({Vec3(0, 0, 0), Vec3(0, NAN, 0)}), "points[1] = nan");
+	EXPECT_COMPLAINT(grid.fill({Vec3(0, 0, INFINITY)}), "points[0] = inf");
 }
 
 TEST(NearPairs, equalsBruteForceAndIsSorted)
@@ -145,7 +161,7 @@ TEST(NearPairs, smallSpheresInALargeBoxCostNoMemory)
 
 TEST(NearPairs, refusesBadInput)
 {
-	EXPECT_COMPLAINT(findNearPairs({Vec3::Zero()}, {1., 2.}, 0, low, high), "findNearPairs.radii");
-	EXPECT_COMPLAINT(findNearPairs({Vec3::Zero()}, {-1.}, 0, low, high), "findNearPairs.radii[0] = -1");
-	EXPECT_COMPLAINT(findNearPairs({Vec3::Zero()}, {1.}, -1, low, high), "findNearPairs.gap");
+	EXPECT_COMPLAINT(findNearPairs({Vec3::Zero()}, {1., 2.}, 0, low, high), "radii");
+	EXPECT_COMPLAINT(findNearPairs({Vec3::Zero()}, {-1.}, 0, low, high), "radii[0] = -1");
+	EXPECT_COMPLAINT(findNearPairs({Vec3::Zero()}, {1.}, -1, low, high), "gap = -1");
 }

@@ -88,12 +88,11 @@ TEST(HexLattice, badInputIsNamed)
 {
 	const double nan = std::nan("");
 	const auto with = [](double rs, double h, double r, int o = 2, int p = 2) { makeHexLattice({rs, h, r, Placement::outside, o, p}); };
-	EXPECT_COMPLAINT(with(nan, 0.08, 0.001), "HexMembrane.specimenRadius");
-	EXPECT_COMPLAINT(with(0.02, -0.08, 0.001), "HexMembrane.specimenHeight = -0.08");
-	EXPECT_COMPLAINT(with(0.02, 0.08, 0), "HexMembrane.particleRadius");
+	EXPECT_COMPLAINT(with(nan, 0.08, 0.001), "specimenRadius");
+	EXPECT_COMPLAINT(with(0.02, -0.08, 0.001), "specimenHeight = -0.08");
+	EXPECT_COMPLAINT(with(0.02, 0.08, 0), "particleRadius");
 	EXPECT_COMPLAINT(with(0.02, 0.08, 0.05), "too coarse");
 	EXPECT_COMPLAINT(with(0.02, 0.001, 0.001), "no ring fits");
-	EXPECT_COMPLAINT(with(0.02, 0.08, 0.001, -1), "HexMembrane.oRingRows = -1");
+	EXPECT_COMPLAINT(with(0.02, 0.08, 0.001, -1), "oRingRows = -1");
 	EXPECT_COMPLAINT(with(0.02, 0.08, 0.001, 2, 40), "overlap");
-	EXPECT_COMPLAINT(placementFromName("inside"), "'outside' or 'centred'");
 }

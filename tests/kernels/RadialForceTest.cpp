@@ -44,5 +44,3 @@ TEST(RadialForce, directionIsHorizontalUnitAndSafeOnTheAxis)
 	EXPECT_NEAR((n - Vec3(-0.6, -0.8, 0)).norm(), 0, 1e-15);
 	EXPECT_EQ(towardAxis({1, 1, 5}, {1, 1, 0}).norm(), 0);
 }
-
-TEST(RadialForce, unknownRuleIsNamed) { EXPECT_COMPLAINT(areaRuleFromName("square"), "'tributary' or 'cube'"); }

@@ -180,7 +180,7 @@ TEST(SpherePacking, saysWhatCanBeReached)
 		FAIL() << "0.30 is denser than random packings are";
 	} catch (const std::runtime_error& e) {
 		const std::string text = e.what(), mark = "a porosity of at least ";
-		EXPECT_NE(text.find("CylinderPacking.porosity = 0.3"), std::string::npos) << text;
+		EXPECT_NE(text.find("porosity = 0.3"), std::string::npos) << text;
 		const std::size_t at = text.find(mark);
 		ASSERT_NE(at, std::string::npos) << text;
 		s.porosity = std::stod(text.substr(at + mark.size()));
@@ -206,18 +206,18 @@ TEST(SpherePacking, refusesBadInput)
 		change(s);
 		packSpheres(s);
 	};
-	EXPECT_COMPLAINT(with([](auto& s) { s.radius = -1; }), "CylinderPacking.radius = -1");
-	EXPECT_COMPLAINT(with([](auto& s) { s.height = NAN; }), "CylinderPacking.height = nan");
-	EXPECT_COMPLAINT(with([](auto& s) { s.radii.clear(); }), "CylinderPacking.radii");
-	EXPECT_COMPLAINT(with([](auto& s) { s.radii[7] = 0; }), "CylinderPacking.radii[7] = 0");
-	EXPECT_COMPLAINT(with([](auto& s) { s.radii[7] = NAN; }), "CylinderPacking.radii[7] = nan");
-	EXPECT_COMPLAINT(with([](auto& s) { s.porosity = 1; }), "CylinderPacking.porosity = 1");
-	EXPECT_COMPLAINT(with([](auto& s) { s.porosity = -0.1; }), "CylinderPacking.porosity = -0.1");
-	EXPECT_COMPLAINT(with([](auto& s) { s.tolerance = 0; }), "CylinderPacking.tolerance = 0");
-	EXPECT_COMPLAINT(with([](auto& s) { s.tolerance = 0.1; }), "CylinderPacking.tolerance = 0.1");
-	EXPECT_COMPLAINT(with([](auto& s) { s.even = 0.7; }), "CylinderPacking.even = 0.7");
-	EXPECT_COMPLAINT(with([](auto& s) { s.even = -1; }), "CylinderPacking.even = -1");
-	EXPECT_COMPLAINT(with([](auto& s) { s.shakes = -1; }), "CylinderPacking.shakes = -1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.radius = -1; }), "radius = -1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.height = NAN; }), "height = nan");
+	EXPECT_COMPLAINT(with([](auto& s) { s.radii.clear(); }), "radii");
+	EXPECT_COMPLAINT(with([](auto& s) { s.radii[7] = 0; }), "radii[7] = 0");
+	EXPECT_COMPLAINT(with([](auto& s) { s.radii[7] = NAN; }), "radii[7] = nan");
+	EXPECT_COMPLAINT(with([](auto& s) { s.porosity = 1; }), "porosity = 1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.porosity = -0.1; }), "porosity = -0.1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.tolerance = 0; }), "tolerance = 0");
+	EXPECT_COMPLAINT(with([](auto& s) { s.tolerance = 0.1; }), "tolerance = 0.1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.even = 0.7; }), "even = 0.7");
+	EXPECT_COMPLAINT(with([](auto& s) { s.even = -1; }), "even = -1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.shakes = -1; }), "shakes = -1");
 	EXPECT_COMPLAINT(with([](auto& s) { s.radii = {1.}, s.porosity = 0.2; }), "does not go into the cylinder");
 	EXPECT_COMPLAINT(with([](auto& s) { s.radii.assign(2000, 2e-3), s.porosity = NAN; }), "the porosity that these radii make");
 }

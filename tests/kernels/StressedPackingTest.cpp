@@ -3,6 +3,7 @@
 #include "kernels/packing/GrainAssembly.hpp"
 #include "kernels/base/Random.hpp"
 #include "kernels/packing/StressedPacking.hpp"
+#include "kernels/base/Check.hpp"
 
 #include <map>
 
@@ -300,6 +301,72 @@ TEST(StressedPacking, saysWhatCanBeReached)
 		EXPECT_NEAR(packUnderStress(spec(porosity)).porosity, porosity, 1e-3);
 }
 
+/// Contacts a grain over those that it needs to stand still without friction, three (Maxwell's count). Grains with fewer than four contacts hold nothing.
+double contactsOverMaxwell(const StressedPacking& p)
+{
+	const int n = static_cast<int>(p.radii.size());
+	std::vector<int> touching(n, 0);
+	int walls = 0, pairs = 0;
+	for (int i = 0; i < n; ++i) {
+		const Vec3& x = p.centres[i];
+		const double r = p.radii[i];
+		const int onWalls = (x[2] < r) + (x[2] + r > H) + (std::hypot(x[0], x[1]) + r > R);
+		walls += onWalls;
+		touching[i] += onWalls;
+		for (int j = i + 1; j < n; ++j) {
+			if ((p.centres[j] - x).norm() >= r + p.radii[j]) continue;
+			++pairs;
+			++touching[i];
+			++touching[j];
+		}
+	}
+	const int holding = std::count_if(touching.begin(), touching.end(), [](int contacts) { return contacts >= 4; });
+	return (pairs + walls) / (3.0 * holding);
+}
+
+TEST(StressedPacking, withoutFrictionItHasADensityOfItsOwn)
+{
+	for (const double friction : {0., 5e-5}) {
+		const StressedPacking p = packUnderStress(spec(NAN, friction));
+		EXPECT_NEAR((2 * p.radialStress + p.axialStress) / 3 / stress, 1, 0.03);
+		EXPECT_LT(p.unbalanced, 1e-3);
+		EXPECT_NEAR(packingPorosity(p.radii, R, H), p.porosity, 1e-12);
+		EXPECT_NEAR(p.porosity, 0.426, 0.01) << "the dense limit of the packings with friction";
+		EXPECT_EQ(p.frictionReached, friction);
+		EXPECT_GT(contactsOverMaxwell(p), 1);
+		EXPECT_LT(contactsOverMaxwell(p), 1.15) << "more than overlaps of 1e-3 make";
+	}
+}
+
+TEST(StressedPacking, withoutFrictionOnlyItsOwnPorosityIsTaken)
+{
+	const double own = packUnderStress(spec(NAN, 0)).porosity;
+	EXPECT_EQ(packUnderStress(spec(own, 0)).porosity, own);
+	EXPECT_EQ(packUnderStress(spec(own + 0.9e-3, 0)).porosity, own) << "within the tolerance";
+	for (const double porosity : {own - 0.02, own + 0.02}) {
+		try {
+			packUnderStress(spec(porosity, 0));
+			FAIL() << porosity;
+		} catch (const FieldFailure& e) {
+			EXPECT_EQ(e.complaint().field, "porosity");
+			EXPECT_NE(e.complaint().wrong.find(formatNumber(own) + " was reached"), std::string::npos) << e.what();
+			EXPECT_NE(e.complaint().fix.find("nan"), std::string::npos) << e.what();
+		}
+	}
+}
+
+// What is asked for stands in the message, not what the packing starts with.
+TEST(StressedPacking, aPorosityFarOutOfReachIsNamedAsAsked)
+{
+	try {
+		packUnderStress(spec(0.3));
+		FAIL();
+	} catch (const FieldFailure& e) {
+		EXPECT_EQ(e.complaint().value, "0.3") << e.what();
+		EXPECT_NE(e.complaint().wrong.find("with friction 0.4"), std::string::npos) << e.what();
+	}
+}
+
 TEST(StressedPacking, rollingFrictionHoldsLooserOnes)
 {
 	StressedPackingSpec loose = spec(0.49);
@@ -318,15 +385,16 @@ TEST(StressedPacking, refusesBadInput)
 		change(s);
 		packUnderStress(s);
 	};
-	EXPECT_COMPLAINT(with([](auto& s) { s.packing.porosity = NAN; }), "CylinderPacking.porosity = nan");
-	EXPECT_COMPLAINT(with([](auto& s) { s.packing.porosity = 0.9; }), "CylinderPacking.porosity = 0.9");
-	EXPECT_COMPLAINT(with([](auto& s) { s.packing.radius = -1; }), "CylinderPacking.radius = -1");
-	EXPECT_COMPLAINT(with([](auto& s) { s.stress = 0; }), "CylinderPacking.stress = 0");
-	EXPECT_COMPLAINT(with([](auto& s) { s.stress = E; }), "CylinderPacking.stress");
-	EXPECT_COMPLAINT(with([](auto& s) { s.law.modulus = NAN; }), "CylinderPacking.young = nan");
-	EXPECT_COMPLAINT(with([](auto& s) { s.law.stiffnessRatio = 0.5; }), "CylinderPacking.stiffnessRatio = 0.5");
-	EXPECT_COMPLAINT(with([](auto& s) { s.law.friction = -0.1; }), "CylinderPacking.friction = -0.1");
-	EXPECT_COMPLAINT(with([](auto& s) { s.law.rollingFriction = -0.1; }), "CylinderPacking.rollingFriction = -0.1");
-	EXPECT_COMPLAINT(with([](auto& s) { s.law.damping = 1; }), "CylinderPacking.damping = 1");
-	EXPECT_COMPLAINT(with([](auto& s) { s.porosityTolerance = 0.5; }), "CylinderPacking.porosityTolerance = 0.5");
+	EXPECT_COMPLAINT(with([](auto& s) { s.packing.porosity = NAN; }), "porosity = nan");
+	EXPECT_COMPLAINT(with([](auto& s) { s.packing.porosity = 0.9; }), "porosity = 0.9");
+	EXPECT_COMPLAINT(with([](auto& s) { s.packing.porosity = -0.01; }), "porosity = -0.01");
+	EXPECT_COMPLAINT(with([](auto& s) { s.packing.radius = -1; }), "radius = -1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.stress = 0; }), "stress = 0");
+	EXPECT_COMPLAINT(with([](auto& s) { s.stress = E; }), "stress");
+	EXPECT_COMPLAINT(with([](auto& s) { s.law.modulus = NAN; }), "modulus = nan");
+	EXPECT_COMPLAINT(with([](auto& s) { s.law.stiffnessRatio = 0.5; }), "stiffnessRatio = 0.5");
+	EXPECT_COMPLAINT(with([](auto& s) { s.law.friction = -0.1; }), "friction = -0.1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.law.rollingFriction = -0.1; }), "rollingFriction = -0.1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.law.damping = 1; }), "damping = 1");
+	EXPECT_COMPLAINT(with([](auto& s) { s.porosityTolerance = 0.5; }), "porosityTolerance = 0.5");
 }

@@ -12,19 +12,17 @@ namespace hexmembrane {
 
 CellGrid::CellGrid(const Vec3& low, const Vec3& high, double cellSize) : origin(low)
 {
-	requirePositive("CellGrid.cellSize", cellSize, "m");
+	requirePositive("cellSize", cellSize, "m");
 	double total = 1;
 	for (int axis = 0; axis < 3; ++axis) {
-		requireFinite("CellGrid.low", low[axis], "m");
-		requireFinite("CellGrid.high", high[axis], "m");
+		requireFinite("low", low[axis], "m");
+		requireFinite("high", high[axis], "m");
 		const double length = high[axis] - low[axis];
-		if (!(length >= 0))
-			reject("CellGrid.high", high[axis], "below CellGrid.low = " + formatNumber(low[axis]), "a box with low <= high on every axis");
+		if (!(length >= 0)) reject("high", high[axis], "below low = " + formatNumber(low[axis]), "a box with low <= high on every axis");
 		const double cells = std::max(1.0, std::floor(length / cellSize));
 		total *= cells;
 		if (total > double(maxCells))
-			reject("CellGrid.cellSize", cellSize, "makes more than " + std::to_string(maxCells) + " cells in this box",
-			       "a larger cell or a smaller box");
+			reject("cellSize", cellSize, "makes more than " + std::to_string(maxCells) + " cells in this box", "a larger cell or a smaller box");
 		count[axis] = int(cells);
 		perLength[axis] = length > 0 ? cells / length : 0;
 	}
@@ -39,13 +37,11 @@ int CellGrid::cellOf(double coordinate, int axis) const
 
 void CellGrid::fill(const std::vector<Vec3>& points)
 {
-	if (points.size() > std::size_t(std::numeric_limits<int>::max()))
-		reject("CellGrid.points", double(points.size()), "too many", "fewer than 2^31 points");
+	if (points.size() > std::size_t(std::numeric_limits<int>::max())) reject("points", double(points.size()), "too many", "fewer than 2^31 points");
 	for (std::size_t i = 0; i < points.size(); ++i)
 		for (int axis = 0; axis < 3; ++axis)
 			if (!std::isfinite(points[i][axis]))
-				reject("CellGrid.points[" + std::to_string(i) + "]", points[i][axis], "not a finite coordinate",
-				       "find out what sent the point away");
+				reject("points[" + std::to_string(i) + "]", points[i][axis], "not a finite coordinate", "find out what sent the point away");
 
 	cellIndex.resize(points.size());
 	sorted.resize(points.size());
@@ -62,12 +58,12 @@ void CellGrid::fill(const std::vector<Vec3>& points)
 NearPairs findNearPairs(const std::vector<Vec3>& centres, const std::vector<double>& radii, double gap, const Vec3& low, const Vec3& high)
 {
 	if (centres.size() != radii.size())
-		reject("findNearPairs.radii", double(radii.size()), "radii for " + std::to_string(centres.size()) + " centres", "one radius for each centre");
-	requireNonNegative("findNearPairs.gap", gap, "m");
+		reject("radii", double(radii.size()), "radii for " + std::to_string(centres.size()) + " centres", "one radius for each centre");
+	requireNonNegative("gap", gap, "m");
 	NearPairs pairs;
 	pairs.start.assign(centres.size() + 1, 0);
 	if (centres.empty()) return pairs;
-	for (std::size_t i = 0; i < radii.size(); ++i) requirePositive("findNearPairs.radii[" + std::to_string(i) + "]", radii[i], "m");
+	for (std::size_t i = 0; i < radii.size(); ++i) requirePositive("radii[" + std::to_string(i) + "]", radii[i], "m");
 
 	// no finer than one cell a sphere: a few grains of dust in a large box need no millions of cells
 	const double reach = 2 * *std::max_element(radii.begin(), radii.end()) + gap;

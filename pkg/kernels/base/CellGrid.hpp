@@ -28,7 +28,8 @@ public:
 	template <class Visit>
 	void forEachPair(Visit&& visit) const;
 
-	/// Calls visit(i) for every point in the cell of `place` and in its neighbours.
+	/// Calls visit(i) for every point in the cell of `place` and in its neighbours. Nothing is near a place that is not finite: it is no error, since the call
+	/// stands in parallel loops, which no exception may leave.
 	template <class Visit>
 	void forEachNear(const Vec3& place, Visit&& visit) const;
 
@@ -79,7 +80,7 @@ void CellGrid::forEachPair(Visit&& visit) const
 template <class Visit>
 void CellGrid::forEachNear(const Vec3& place, Visit&& visit) const
 {
-	if (first.empty()) return;
+	if (first.empty() || !place.allFinite()) return;
 	std::array<int, 3> c;
 	for (int axis = 0; axis < 3; ++axis) c[axis] = cellOf(place[axis], axis);
 	for (int iz = std::max(c[2] - 1, 0); iz <= std::min(c[2] + 1, count[2] - 1); ++iz)

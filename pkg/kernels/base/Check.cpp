@@ -3,9 +3,15 @@
 
 #include <cmath>
 #include <cstdio>
-#include <stdexcept>
+#include <utility>
 
 namespace hexmembrane {
+
+std::string Complaint::text() const { return field + " = " + value + ": " + wrong + "; fix: " + fix; }
+
+FieldError::FieldError(Complaint complaint) : std::invalid_argument(complaint.text()), said(std::move(complaint)) {}
+
+FieldFailure::FieldFailure(Complaint complaint) : std::runtime_error(complaint.text()), said(std::move(complaint)) {}
 
 std::string formatNumber(double value)
 {
@@ -14,34 +20,36 @@ std::string formatNumber(double value)
 	return text;
 }
 
-void reject(const std::string& parameter, const std::string& value, const std::string& wrong, const std::string& fix)
+void reject(const std::string& field, const std::string& value, const std::string& wrong, const std::string& fix)
 {
-	throw std::invalid_argument(parameter + " = " + value + ": " + wrong + "; fix: " + fix);
+	throw FieldError({field, value, wrong, fix});
 }
 
-void reject(const std::string& parameter, double value, const std::string& wrong, const std::string& fix)
+void reject(const std::string& field, double value, const std::string& wrong, const std::string& fix) { reject(field, formatNumber(value), wrong, fix); }
+
+void reject(const std::string& field, int value, const std::string& wrong, const std::string& fix) { reject(field, std::to_string(value), wrong, fix); }
+
+void fail(const std::string& field, double value, const std::string& wrong, const std::string& fix)
 {
-	reject(parameter, formatNumber(value), wrong, fix);
+	throw FieldFailure({field, formatNumber(value), wrong, fix});
 }
 
-void reject(const std::string& parameter, int value, const std::string& wrong, const std::string& fix) { reject(parameter, std::to_string(value), wrong, fix); }
-
-void requireFinite(const std::string& parameter, double value, const std::string& unit)
+void requireFinite(const std::string& field, double value, const std::string& unit)
 {
-	if (std::isnan(value)) reject(parameter, value, "not given or not a number", "give a number in " + unit);
-	if (std::isinf(value)) reject(parameter, value, "not finite", "give a finite number in " + unit);
+	if (std::isnan(value)) reject(field, value, "not given or not a number", "give a number in " + unit);
+	if (std::isinf(value)) reject(field, value, "not finite", "give a finite number in " + unit);
 }
 
-void requirePositive(const std::string& parameter, double value, const std::string& unit)
+void requirePositive(const std::string& field, double value, const std::string& unit)
 {
-	requireFinite(parameter, value, unit);
-	if (value <= 0) reject(parameter, value, "must be positive", "give a number > 0 in " + unit);
+	requireFinite(field, value, unit);
+	if (value <= 0) reject(field, value, "must be positive", "give a number > 0 in " + unit);
 }
 
-void requireNonNegative(const std::string& parameter, double value, const std::string& unit)
+void requireNonNegative(const std::string& field, double value, const std::string& unit)
 {
-	requireFinite(parameter, value, unit);
-	if (value < 0) reject(parameter, value, "must not be negative", "give a number >= 0 in " + unit);
+	requireFinite(field, value, unit);
+	if (value < 0) reject(field, value, "must not be negative", "give a number >= 0 in " + unit);
 }
 
 } // namespace hexmembrane

@@ -13,16 +13,15 @@ bool BondLaw::central() const { return ks == 0 && std::isinf(tensileStrength) &&
 
 void BondLaw::check() const
 {
-	requirePositive("MembraneBonds.kn", kn, "N/m");
-	requireNonNegative("MembraneBonds.ks", ks, "N/m");
-	requireNonNegative("MembraneBonds.friction", friction, "1");
+	requirePositive("kn", kn, "N/m");
+	requireNonNegative("ks", ks, "N/m");
+	requireNonNegative("friction", friction, "1");
 	const auto strength = [](const char* name, double value) {
-		if (!(value > 0)) reject(std::string("MembraneBonds.") + name, value, "must be positive", "a force in N, or inf for a bond that never breaks");
+		if (!(value > 0)) reject(name, value, "must be positive", "a force in N, or inf for a bond that never breaks");
 	};
 	strength("tensileStrength", tensileStrength);
 	strength("shearStrength", shearStrength);
-	if (tensionOnly && ks > 0)
-		reject("MembraneBonds.tensionOnly", 1, "is for central bonds: a wrinkled sheet has no shear to carry", "ks = 0 (poisson = 1/3)");
+	if (tensionOnly && ks > 0) reject("tensionOnly", 1, "is for central bonds: a wrinkled sheet has no shear to carry", "ks = 0 (Poisson's ratio 1/3)");
 }
 
 BondForce::BondForce(const HexStencil& s, const BondLaw& l) : position(s.perRing, s.rings), force(s.perRing, s.rings), stencil(s), law(l), bondForce(3)
@@ -49,20 +48,18 @@ void BondForce::setRestLengths(BondState& state) const
 
 namespace {
 
-/// Spring forces on the first particles of a row of bonds. A bond of zero length has no direction: its force is 0 (the far end of the rows is
-/// never that close in a scene that the integrator can hold).
+/// Spring forces on the first particles of a row of bonds. A bond of zero length has no direction: its force is 0.
 template <bool tensionOnly>
 inline void springs(int n, const double* __restrict ax, const double* __restrict ay, const double* __restrict az, const double* __restrict bx,
                     const double* __restrict by, const double* __restrict bz, const double* __restrict rest, double kn, double* __restrict fx,
                     double* __restrict fy, double* __restrict fz)
 {
-	constexpr double tiny = std::numeric_limits<double>::min();
 #pragma omp simd
 	for (int i = 0; i < n; ++i) {
 		const double dx = bx[i] - ax[i], dy = by[i] - ay[i], dz = bz[i] - az[i];
 		const double d = std::sqrt(dx * dx + dy * dy + dz * dz);
 		const double extension = tensionOnly ? std::max(d - rest[i], 0.) : d - rest[i];
-		const double c = kn * extension / std::max(d, tiny);
+		const double c = d > 0 ? kn * extension / d : 0;
 		fx[i] = c * dx;
 		fy[i] = c * dy;
 		fz[i] = c * dz;

@@ -14,11 +14,11 @@ constexpr int minPerRing = 6;
 
 void check(const HexLatticeSpec& s)
 {
-	requirePositive("HexMembrane.specimenRadius", s.specimenRadius, "m");
-	requirePositive("HexMembrane.specimenHeight", s.specimenHeight, "m");
-	requirePositive("HexMembrane.particleRadius", s.particleRadius, "m");
-	if (s.oRingRows < 0) reject("HexMembrane.oRingRows", s.oRingRows, "a number of rows cannot be negative", "0 or more (2 in the source study)");
-	if (s.platenRows < 0) reject("HexMembrane.platenRows", s.platenRows, "a number of rows cannot be negative", "0 or more");
+	requirePositive("specimenRadius", s.specimenRadius, "m");
+	requirePositive("specimenHeight", s.specimenHeight, "m");
+	requirePositive("particleRadius", s.particleRadius, "m");
+	if (s.oRingRows < 0) reject("oRingRows", s.oRingRows, "a number of rows cannot be negative", "0 or more (2 in the source study)");
+	if (s.platenRows < 0) reject("platenRows", s.platenRows, "a number of rows cannot be negative", "0 or more");
 }
 
 /// Number of spheres a ring and the radii that follow; see the class comment.
@@ -31,7 +31,7 @@ void closeRing(const HexLatticeSpec& s, HexLattice& out)
 	if (n < minPerRing) {
 		const double s6 = std::sin(M_PI / minPerRing);
 		const double max = s.specimenRadius * (outside ? s6 / (1 - s6) : s6);
-		reject("HexMembrane.particleRadius", s.particleRadius, "too coarse, a ring would have " + std::to_string(n) + " spheres",
+		reject("particleRadius", s.particleRadius, "too coarse, a ring would have " + std::to_string(n) + " spheres",
 		       "at most " + formatNumber(max) + " m for this specimen (6 spheres a ring)");
 	}
 	out.perRing = static_cast<int>(n);
@@ -48,12 +48,11 @@ void closeRing(const HexLatticeSpec& s, HexLattice& out)
 int specimenRows(const HexLatticeSpec& s, const HexLattice& l)
 {
 	if (s.specimenHeight < 2 * l.sphereRadius)
-		reject("HexMembrane.specimenHeight", s.specimenHeight, "lower than one membrane particle, no ring fits",
+		reject("specimenHeight", s.specimenHeight, "lower than one membrane particle, no ring fits",
 		       "more than " + formatNumber(2 * l.sphereRadius) + " m, or a smaller particleRadius");
 	const int rows = 1 + static_cast<int>(std::lround((s.specimenHeight - 2 * l.sphereRadius) / l.ringSpacing));
 	if (2 * s.platenRows >= rows)
-		reject("HexMembrane.platenRows", s.platenRows,
-		       "the rows at both platens overlap: only " + std::to_string(rows) + " rows stand over the specimen",
+		reject("platenRows", s.platenRows, "the rows at both platens overlap: only " + std::to_string(rows) + " rows stand over the specimen",
 		       "at most " + std::to_string((rows - 1) / 2) + ", so that group 3 keeps a row");
 	return rows;
 }
@@ -110,12 +109,5 @@ HexLattice makeHexLattice(const HexLatticeSpec& spec)
 }
 
 double largestMembraneRadius(double smallestGrainRadius) { return 3 / (2 * std::sqrt(3.) - 3) * smallestGrainRadius; }
-
-Placement placementFromName(const std::string& name)
-{
-	if (name == "outside") return Placement::outside;
-	if (name == "centred") return Placement::centred;
-	reject("HexMembrane.placement", "'" + name + "'", "unknown", "'outside' or 'centred'");
-}
 
 } // namespace hexmembrane

@@ -5,7 +5,6 @@
 #include "kernels/base/Vec3.hpp"
 
 #include <array>
-#include <string>
 #include <vector>
 
 namespace hexmembrane {
@@ -57,8 +56,5 @@ HexLattice makeHexLattice(const HexLatticeSpec& spec);
 
 /// Largest membrane sphere radius that lets no grain through the gap of three touching spheres: 3/(2 sqrt(3) - 3) r (Eq. 1 of the source study).
 double largestMembraneRadius(double smallestGrainRadius);
-
-/// Parses 'outside' or 'centred'. \throws std::invalid_argument
-Placement placementFromName(const std::string& name);
 
 } // namespace hexmembrane

@@ -11,7 +11,7 @@ TriangleMesh::TriangleMesh(int vertexCount, std::vector<std::array<int, 3>> tris
 {
 	for (size_t t = 0; t < triangles.size(); ++t) {
 		const auto& v = triangles[t];
-		const auto name = "MembranePressure.triangles[" + std::to_string(t) + "]";
+		const auto name = "triangles[" + std::to_string(t) + "]";
 		for (int corner : v)
 			if (corner < 0 || corner >= vertexCount)
 				reject(name, corner, "no such vertex", "indices from 0 to " + std::to_string(vertexCount - 1) + " into ids");
@@ -60,10 +60,7 @@ void normaliseAll(std::vector<Vec3>& vectors)
 	}
 }
 
-PressureForce::PressureForce(TriangleMesh m, double inwards) : mesh(std::move(m)), offset(inwards)
-{
-	requireNonNegative("MembranePressure.offset", inwards, "m");
-}
+PressureForce::PressureForce(TriangleMesh m, double inwards) : mesh(std::move(m)), offset(inwards) { requireNonNegative("offset", inwards, "m"); }
 
 void PressureForce::compute(double pressure, const std::vector<Vec3>& x, std::vector<Vec3>& force)
 {

@@ -1,19 +1,10 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "kernels/membrane/RadialForce.hpp"
 
-#include "kernels/base/Check.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 namespace hexmembrane {
-
-AreaRule areaRuleFromName(const std::string& name)
-{
-	if (name == "tributary") return AreaRule::tributary;
-	if (name == "cube") return AreaRule::cube;
-	reject("MembraneRadialServo.areaRule", "'" + name + "'", "unknown", "'tributary' or 'cube'");
-}
 
 namespace {
 

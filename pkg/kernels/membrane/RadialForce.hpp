@@ -4,7 +4,6 @@
 #include "kernels/membrane/PaddedRings.hpp"
 #include "kernels/base/Vec3.hpp"
 
-#include <string>
 #include <vector>
 
 namespace hexmembrane {
@@ -14,9 +13,6 @@ enum class AreaRule {
 	tributary, ///< its share of the ring's present inner surface: 2 pi (r - R)/n times half the distance of the two neighbouring rings
 	cube       ///< the source study's (2R)^2, a cube round the sphere: 15.47 % more than the flat lattice's tributary area 2 sqrt(3) R^2
 };
-
-/// Parses 'tributary' or 'cube'. \throws std::invalid_argument
-AreaRule areaRuleFromName(const std::string& name);
 
 /// Present shape of a ring: centroid of its particles and their mean distance from the vertical axis through it (m).
 struct RingShape {

@@ -32,8 +32,7 @@ Polygon clip(const Polygon& in, double level, double sign)
 
 TubeSlab measureTube(const std::vector<std::array<int, 3>>& triangles, const std::vector<Vec3>& x, double zBottom, double zTop)
 {
-	if (!(zBottom < zTop))
-		reject("HexMembrane.enclosedVolume: zBottom", zBottom, "not below zTop = " + formatNumber(zTop), "give the lower platen's face first");
+	if (!(zBottom < zTop)) reject("zBottom", zBottom, "not below zTop = " + formatNumber(zTop), "give the lower platen's face first");
 	TubeSlab slab{0, 0};
 	for (const auto& t : triangles) {
 		Polygon polygon;

@@ -83,8 +83,8 @@ HEXMEMBRANE_WIDEST void forceRow(int n, double factor, Row up, Row down, Row bel
 TubePressure::TubePressure(const HexStencil& s, int firstRing, int lastRing, double inwards)
     : force(s.perRing, s.rings), stencil(s), first(firstRing), last(lastRing), offset(inwards), up(s.perRing, s.rings + 2), down(up), inner(s.perRing, s.rings)
 {
-	requireNonNegative("TubePressure.offset", inwards, "m");
-	if (first < 0 || first > last || last >= s.rings) reject("TubePressure.first", first, "no such rings", "0 <= first <= last < rings");
+	requireNonNegative("offset", inwards, "m");
+	if (first < 0 || first > last || last >= s.rings) reject("first", first, "no such rings", "0 <= first <= last < rings");
 }
 
 void TubePressure::areaVectors(const PaddedRings& x)

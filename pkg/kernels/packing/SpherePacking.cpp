@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <stdexcept>
 #include <string>
 
 namespace hexmembrane {
@@ -37,14 +36,14 @@ double solidVolume(const std::vector<double>& radii)
 
 void checkCylinder(double radius, double height)
 {
-	requirePositive("CylinderPacking.radius", radius, "m");
-	requirePositive("CylinderPacking.height", height, "m");
+	requirePositive("radius", radius, "m");
+	requirePositive("height", height, "m");
 }
 
 void checkRadii(const std::vector<double>& radii)
 {
-	if (radii.empty()) reject("CylinderPacking.radii", "[]", "no spheres", "one radius (m) for each sphere");
-	for (std::size_t i = 0; i < radii.size(); ++i) requirePositive("CylinderPacking.radii[" + std::to_string(i) + "]", radii[i], "m");
+	if (radii.empty()) reject("radii", "[]", "no spheres", "one radius (m) for each sphere");
+	for (std::size_t i = 0; i < radii.size(); ++i) requirePositive("radii[" + std::to_string(i) + "]", radii[i], "m");
 }
 
 void checkSpec(const SpherePackingSpec& s)
@@ -52,12 +51,12 @@ void checkSpec(const SpherePackingSpec& s)
 	checkCylinder(s.radius, s.height);
 	checkRadii(s.radii);
 	if (!std::isnan(s.porosity) && !(s.porosity > 0 && s.porosity < 1))
-		reject("CylinderPacking.porosity", s.porosity, "outside 0 .. 1", "e.g. 0.40, or nan to keep the radii");
-	requirePositive("CylinderPacking.tolerance", s.tolerance, "1 (share of the mean radius)");
-	if (s.tolerance > 0.01) reject("CylinderPacking.tolerance", s.tolerance, "too coarse for a packing without overlaps", "at most 0.01, 1e-4 by default");
-	requireNonNegative("CylinderPacking.even", s.even, "1 (solid fraction)");
-	if (s.even > largestEven) reject("CylinderPacking.even", s.even, "as dense as spheres jam", "at most " + formatNumber(largestEven));
-	if (s.shakes < 0) reject("CylinderPacking.shakes", s.shakes, "a number of trials cannot be negative", "0 or more");
+		reject("porosity", s.porosity, "outside 0 .. 1", "e.g. 0.40, or nan to keep the radii");
+	requirePositive("tolerance", s.tolerance, "1 (share of the mean radius)");
+	if (s.tolerance > 0.01) reject("tolerance", s.tolerance, "too coarse for a packing without overlaps", "at most 0.01, 1e-4 by default");
+	requireNonNegative("even", s.even, "1 (solid fraction)");
+	if (s.even > largestEven) reject("even", s.even, "as dense as spheres jam", "at most " + formatNumber(largestEven));
+	if (s.shakes < 0) reject("shakes", s.shakes, "a number of trials cannot be negative", "0 or more");
 }
 
 void checkSpheresFit(const SpherePackingSpec& s, double scale)
@@ -65,12 +64,10 @@ void checkSpheresFit(const SpherePackingSpec& s, double scale)
 	const double largest = scale * *std::max_element(s.radii.begin(), s.radii.end());
 	const double room = std::min(s.radius, s.height / 2);
 	if (largest >= room)
-		reject("CylinderPacking.radii", largest, "the largest sphere (m, scaled to the porosity) does not go into the cylinder",
+		reject("radii", largest, "the largest sphere (m, scaled to the porosity) does not go into the cylinder",
 		       "more (smaller) spheres or a wider cylinder: radii below " + formatNumber(room) + " m");
 	const double fraction = scale * scale * scale * solidVolume(s.radii) / (M_PI * s.radius * s.radius * s.height);
-	if (fraction >= 1)
-		reject("CylinderPacking.radii", 1 - fraction, "the porosity that these radii make",
-		       "fewer or smaller spheres, or give a porosity to scale them to");
+	if (fraction >= 1) reject("radii", 1 - fraction, "the porosity that these radii make", "fewer or smaller spheres, or give a porosity to scale them to");
 }
 
 /// Uniform in the part of the cylinder that a sphere's centre may take. Drawn from the square round it: no sine, so the same bits everywhere.
@@ -156,9 +153,10 @@ private:
 {
 	// the densest state of one trial, that of the next may be a little looser
 	const double advised = std::ceil((reached + 0.004) * 1000) / 1000;
-	throw std::runtime_error("CylinderPacking.porosity = " + formatNumber(asked) + ": denser than these " + std::to_string(spec.radii.size()) +
-	                         " spheres go into this cylinder at random, the densest state found has " + formatNumber(reached) +
-	                         "; fix: a porosity of at least " + formatNumber(advised) + ", more (smaller) spheres, or a wider gradation");
+	fail("porosity", asked,
+	     "denser than these " + std::to_string(spec.radii.size()) + " spheres go into this cylinder at random, the densest state found has " +
+	             formatNumber(reached),
+	     "a porosity of at least " + formatNumber(advised) + ", more (smaller) spheres, or a wider gradation");
 }
 
 } // namespace
@@ -174,8 +172,8 @@ double scaleForPorosity(const std::vector<double>& radii, double cylinderRadius,
 {
 	checkCylinder(cylinderRadius, cylinderHeight);
 	checkRadii(radii);
-	requireFinite("CylinderPacking.porosity", porosity, "1");
-	if (!(porosity > 0 && porosity < 1)) reject("CylinderPacking.porosity", porosity, "outside 0 .. 1", "e.g. 0.40");
+	requireFinite("porosity", porosity, "1");
+	if (!(porosity > 0 && porosity < 1)) reject("porosity", porosity, "outside 0 .. 1", "e.g. 0.40");
 	return std::cbrt((1 - porosity) * M_PI * cylinderRadius * cylinderRadius * cylinderHeight / solidVolume(radii));
 }
 
@@ -216,9 +214,7 @@ SpherePacking packSpheres(const SpherePackingSpec& spec)
 	out.steps = grower.steps();
 	out.maxOverlap = largestOverlap(out.centres, out.radii, spec.radius, spec.height) / grower.mean();
 	if (!(out.maxOverlap <= spec.tolerance))
-		throw std::runtime_error("CylinderPacking.maxOverlap = " + formatNumber(out.maxOverlap) +
-		                         ": above the tolerance although the relaxation ended; fix: "
-		                         "report it with radii and seed");
+		fail("maxOverlap", out.maxOverlap, "above the tolerance although the relaxation ended", "report it with radii and seed");
 	return out;
 }
 

@@ -42,7 +42,7 @@ struct SpherePacking {
 /// What can be reached is the random close packing of frictionless spheres of these sizes, less what the walls cost (a layer half a grain wide): for
 /// about 7,000 grains of a uniform sand in a cylinder of H = 2 D a porosity of 0.38, for 1,200 grains 0.40. Shaking gains about 0.005. Anything denser
 /// is an error that names the densest state found.
-/// \throws std::invalid_argument for bad input, std::runtime_error for a porosity out of reach
+/// \throws FieldError for bad input, FieldFailure for a porosity out of reach
 SpherePacking packSpheres(const SpherePackingSpec& spec);
 
 /// 1 - volume of spheres of `radii` / volume of the cylinder. All in m. \throws std::invalid_argument for lengths that are not positive

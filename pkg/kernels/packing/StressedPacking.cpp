@@ -5,15 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 namespace hexmembrane {
 
 namespace {
 
-/// How much looser than wanted it starts, and the loosest start.
-constexpr double looser = 0.08, loosest = 0.65;
+/// How much looser than wanted it starts, the densest and the loosest start, and the start of grains without friction. All of them are far from jamming.
+constexpr double looser = 0.08, densestStart = 0.45, loosest = 0.65, smoothStart = 0.55;
 /// Inertial number of the growth; share of the friction lost in the time that a grain needs to move its own size under the stress.
 constexpr double inertialNumber = 1e-3, frictionLoss = 0.05;
 /// Friction below this is none.
@@ -23,25 +22,28 @@ constexpr double stressTolerance = 0.03, equilibrium = 1e-3;
 constexpr int lookEvery = 100, looks = 3;
 constexpr long maxSteps = 1000000;
 
+bool smooth(const StressedPackingSpec& s) { return s.law.friction < noFriction; }
+
 void check(const StressedPackingSpec& s)
 {
-	requireFinite("CylinderPacking.porosity", s.packing.porosity, "1 (a packing under stress needs one)");
-	requirePositive("CylinderPacking.stress", s.stress, "Pa");
-	requirePositive("CylinderPacking.young", s.law.modulus, "Pa");
-	requirePositive("CylinderPacking.stiffnessRatio", s.law.stiffnessRatio, "1 (kn/ks)");
-	requireNonNegative("CylinderPacking.friction", s.law.friction, "1 (tan of the angle)");
-	requireNonNegative("CylinderPacking.rollingFriction", s.law.rollingFriction, "1");
-	requireNonNegative("CylinderPacking.damping", s.law.damping, "1");
-	requirePositive("CylinderPacking.porosityTolerance", s.porosityTolerance, "1");
-	if (s.law.stiffnessRatio < 1)
-		reject("CylinderPacking.stiffnessRatio", s.law.stiffnessRatio, "springs stiffer in shear than along the normal", "kn/ks >= 1");
-	if (s.law.damping >= 1) reject("CylinderPacking.damping", s.law.damping, "would stop everything", "below 1, 0.5 by default");
-	if (s.porosityTolerance >= 0.1) reject("CylinderPacking.porosityTolerance", s.porosityTolerance, "no tolerance of a porosity", "e.g. 0.001");
+	requirePositive("stress", s.stress, "Pa");
+	requirePositive("modulus", s.law.modulus, "Pa");
+	requirePositive("stiffnessRatio", s.law.stiffnessRatio, "1 (kn/ks)");
+	requireNonNegative("friction", s.law.friction, "1 (tan of the angle)");
+	requireNonNegative("rollingFriction", s.law.rollingFriction, "1");
+	requireNonNegative("damping", s.law.damping, "1");
+	requirePositive("porosityTolerance", s.porosityTolerance, "1");
+	if (s.law.stiffnessRatio < 1) reject("stiffnessRatio", s.law.stiffnessRatio, "springs stiffer in shear than along the normal", "kn/ks >= 1");
+	if (s.law.damping >= 1) reject("damping", s.law.damping, "would stop everything", "below 1, 0.5 by default");
+	if (s.porosityTolerance >= 0.1) reject("porosityTolerance", s.porosityTolerance, "no tolerance of a porosity", "e.g. 0.001");
 	if (s.stress > 1e-2 * s.law.modulus)
-		reject("CylinderPacking.stress", s.stress, "grains would overlap by more than 1 %",
-		       "at most 0.01 of CylinderPacking.young = " + formatNumber(s.law.modulus));
+		reject("stress", s.stress, "grains would overlap by more than 1 %",
+		       "at most 0.01 of the contact modulus, " + formatNumber(s.law.modulus) + " Pa");
+	if (std::isnan(s.packing.porosity) && smooth(s)) return;
+	requireFinite("porosity", s.packing.porosity, "1 (a packing under stress needs one)");
+	if (!(s.packing.porosity > 0)) reject("porosity", s.packing.porosity, "outside 0 .. 1", "e.g. 0.40");
 	if (s.packing.porosity >= loosest)
-		reject("CylinderPacking.porosity", s.packing.porosity, "no packing of spheres that carries stress", "below " + formatNumber(loosest));
+		reject("porosity", s.packing.porosity, "no packing of spheres that carries stress", "below " + formatNumber(loosest));
 }
 
 /// Brings one assembly to size 1 and to the wanted stress.
@@ -103,9 +105,9 @@ private:
 	void count()
 	{
 		if (++made > maxSteps)
-			throw std::runtime_error("CylinderPacking.stress = " + formatNumber(wanted) + ": no equilibrium after " + std::to_string(maxSteps) +
-			                         " steps, the stress is " + formatNumber(grains.meanStress()) +
-			                         " Pa; fix: a higher stress, more damping, or another porosity");
+			fail("stress", wanted,
+			     "no equilibrium after " + std::to_string(maxSteps) + " steps, the stress is " + formatNumber(grains.meanStress()) + " Pa",
+			     "a higher stress, another seed, or another porosity");
 	}
 
 	double wanted, final, rolling, friction, growth, loss;
@@ -117,12 +119,24 @@ private:
 {
 	// another seed or a neighbouring porosity may end a little off what this one reached, a loose one more than a dense one
 	const double advised = tooDense ? std::ceil((reached + 0.002) * 1000) / 1000 : std::floor((reached - 0.01) * 1000) / 1000;
-	throw std::runtime_error("CylinderPacking.porosity = " + formatNumber(spec.packing.porosity) + ": " + (tooDense ? "denser" : "looser") +
-	                         " than these " + std::to_string(spec.packing.radii.size()) + " grains get at " + formatNumber(spec.stress) +
-	                         " Pa with friction " + formatNumber(spec.law.friction) +
-	                         (spec.law.rollingFriction > 0 ? " and rolling friction " + formatNumber(spec.law.rollingFriction) : "") + ", " +
-	                         formatNumber(reached) + " was reached; fix: a porosity of at " + (tooDense ? "least " : "most ") + formatNumber(advised) +
-	                         (tooDense ? "" : ", or more friction or rolling friction"));
+	fail("porosity", spec.packing.porosity,
+	     std::string(tooDense ? "denser" : "looser") + " than these " + std::to_string(spec.packing.radii.size()) + " grains get at " +
+	             formatNumber(spec.stress) + " Pa with friction " + formatNumber(spec.law.friction) +
+	             (spec.law.rollingFriction > 0 ? " and rolling friction " + formatNumber(spec.law.rollingFriction) : "") + ", " + formatNumber(reached) +
+	             " was reached",
+	     std::string("a porosity of at ") + (tooDense ? "least " : "most ") + formatNumber(advised) +
+	             (tooDense ? "" : ", or more friction or rolling friction"));
+}
+
+void requirePorosity(const StressedPackingSpec& spec, bool densest, double reached)
+{
+	const double excess = reached - spec.packing.porosity;
+	if (smooth(spec) && std::abs(excess) > spec.porosityTolerance) // false for a porosity that is not asked for
+		fail("porosity", spec.packing.porosity,
+		     "grains without friction have one porosity at this stress, whatever is asked for; " + formatNumber(reached) + " was reached",
+		     "friction, no stress, or no porosity (nan: the packing's own)");
+	if (densest || excess > spec.porosityTolerance) refuse(spec, true, reached);
+	if (excess < -spec.porosityTolerance) refuse(spec, false, reached);
 }
 
 } // namespace
@@ -131,13 +145,14 @@ StressedPacking packUnderStress(const StressedPackingSpec& spec)
 {
 	check(spec);
 	SpherePackingSpec loose = spec.packing;
-	loose.porosity = std::min(spec.packing.porosity + looser, loosest);
+	loose.porosity = smooth(spec) ? smoothStart : std::clamp(spec.packing.porosity + looser, densestStart, loosest);
 	loose.even = 0;
 	const SpherePacking start = packSpheres(loose);
-	const double size = std::cbrt((1 - spec.packing.porosity) / (1 - start.porosity));
+	// grains without friction grow until they carry the stress: there is no other size to bring them to, and no friction to lower
+	const double size = smooth(spec) ? 1 : std::cbrt((1 - spec.packing.porosity) / (1 - start.porosity));
 
 	Compactor compactor(spec, start, size);
-	const bool reached = compactor.compress();
+	const bool densest = !smooth(spec) && !compactor.compress();
 	compactor.settle();
 	const GrainAssembly& grains = compactor.assembly();
 
@@ -151,8 +166,7 @@ StressedPacking packUnderStress(const StressedPackingSpec& spec)
 		mean += r / double(out.radii.size());
 	}
 	out.porosity = packingPorosity(out.radii, spec.packing.radius, spec.packing.height);
-	if (!reached || out.porosity > spec.packing.porosity + spec.porosityTolerance) refuse(spec, true, out.porosity);
-	if (out.porosity < spec.packing.porosity - spec.porosityTolerance) refuse(spec, false, out.porosity);
+	requirePorosity(spec, densest, out.porosity);
 	out.maxOverlap = largestOverlap(out.centres, out.radii, spec.packing.radius, spec.packing.height) / mean;
 	out.shakesUsed = start.shakesUsed;
 	out.steps = start.steps + compactor.steps();
