@@ -1,9 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembranePressure.hpp"
 
-#include "GatherBodies.hpp"
+#include "base/GatherBodies.hpp"
 #include "base/NamedFields.hpp"
-#include "kernels/base/IntegralController.hpp"
 
 namespace yade {
 
@@ -46,10 +45,11 @@ void MembranePressure::prepareMesh()
 void MembranePressure::prepare()
 {
 	hexmembrane::requireFinite("MembranePressure.pressure", pressure, "Pa");
-	hexmembrane::requireNonNegative("MembranePressure.gain", gain, "1");
-	if (gain > 0) {
-		if (!membrane) hexmembrane::reject("MembranePressure.gain", gain, "a mesh of your own has no transmitted pressure to close the loop with", "0");
-		if (iterPeriod < 1) hexmembrane::reject("MembranePressure.iterPeriod", iterPeriod, "must be at least one step", "500, say");
+	loop().require(scene->dt);
+	if (loop().closed()) {
+		if (!membrane)
+			hexmembrane::reject("MembranePressure.timeConstant", timeConstant,
+			                    "a mesh of your own has no transmitted pressure to close the loop with", "inf");
 		if (!(maxFactor > 1) || !math::isfinite(maxFactor))
 			hexmembrane::reject("MembranePressure.maxFactor", maxFactor, "leaves no room for corrections", "a number above 1");
 	}
@@ -72,74 +72,46 @@ void MembranePressure::prepare()
 	builtTriangles = triangles;
 }
 
-void MembranePressure::computeMesh()
+PressureLoop MembranePressure::loop() { return {"MembranePressure", timeConstant, 1 / maxFactor, maxFactor, factor, transmitted, saturated, lastCorrection}; }
+
+void MembranePressure::requireCompactScene() const
+{
+	if (!membrane) throw std::runtime_error("MembranePressure: a mesh of your own is not stepped in the compact tier; fix: use the reference tier");
+}
+
+void MembranePressure::action() { stepOverBodies(*this); }
+
+void MembranePressure::step(StepView& view)
+{
+	if (!tube) return stepMesh();
+	loop().close(*scene, pressure, [&] { return membrane->transmitted(view, 3, "MembranePressure"); });
+	tube->compute(applied(), view.positions(*membrane));
+	view.addForces(*membrane, {{tube->firstRing(), tube->lastRing()}}, tube->force, nullptr, meter.get());
+}
+
+void MembranePressure::stepMesh()
 {
 	const int count = static_cast<int>(vertexIds.size());
-	const auto& bodies = *scene->bodies;
-	int missing = -1;
 	positions.resize(count);
-#pragma omp parallel for schedule(static) reduction(max : missing)
 	for (int i = 0; i < count; ++i) {
-		prefetchAhead(bodies, vertexIds, i);
-		const Body* b = livingBody(bodies, vertexIds[i]);
-		if (b)
-			positions[i] = b->state->se3.position;
-		else
-			missing = std::max(missing, i);
+		const Body* b = livingBody(*scene->bodies, vertexIds[i]);
+		if (!b)
+			throw std::runtime_error("MembranePressure: body " + std::to_string(vertexIds[i]) + " of the loaded surface is gone (iteration " +
+			                         std::to_string(scene->iter) + "); fix: do not erase it, or load the last checkpoint");
+		positions[i] = b->state->se3.position;
 	}
-	if (missing >= 0)
-		throw std::runtime_error("MembranePressure: body " + std::to_string(vertexIds[missing]) + " of the loaded surface is gone (iteration " +
-		                         std::to_string(scene->iter) + "); fix: do not erase it, or load the last checkpoint");
 	mesh.compute(pressure, positions, force);
-}
-
-void MembranePressure::closeLoop(const std::function<Real()>& transmittedNow)
-{
-	if (!(gain > 0) || scene->iter % iterPeriod != 0) return;
-	transmitted = transmittedNow();
-	factor = hexmembrane::correctedFactor(factor, gain, pressure, transmitted, 1 / maxFactor, maxFactor, saturated);
-}
-
-void MembranePressure::action()
-{
-	prepare();
-	if (tube) {
-		closeLoop([this]() { return membrane->transmittedPressure(3); });
-		membrane->gather(*scene, "MembranePressure", rows);
-		tube->compute(applied(), rows);
-	} else
-		computeMesh();
-
-	// forces out, and the work since the last step by the trapezoidal rule, in one sweep
-	const int loadedCount = static_cast<int>(loaded.size());
-	const bool continued = static_cast<int>(lastForces.size()) == loadedCount && static_cast<int>(lastPositions.size()) == loadedCount;
-	lastForces.resize(loadedCount, Vector3r::Zero());
-	lastPositions.resize(loadedCount, Vector3r::Zero());
-	Real done = 0;
-	int bad = -1;
-#pragma omp parallel for schedule(static) reduction(max : bad) reduction(+ : done)
-	for (int l = 0; l < loadedCount; ++l) {
-		const int v = loaded[l];
-		const Vector3r f = forceOn(v), x = positionOf(v);
-		if (!isFinite(f)) bad = std::max(bad, v);
-		scene->forces.addForce(vertexIds[v], f);
-		done += 0.5 * (lastForces[l] + f).dot(x - lastPositions[l]);
-		lastForces[l] = f;
-		lastPositions[l] = x;
+	for (int i = 0; i < count; ++i) {
+		if (!isFinite(force[i])) throwNotFinite("MembranePressure: force", vertexIds[i], *scene);
+		scene->forces.addForce(vertexIds[i], force[i]);
 	}
-	if (bad >= 0) throwNotFinite("MembranePressure: force", vertexIds[bad], *scene);
-	if (continued) work += done;
-	bookWork();
+	vector<Vector3r> f(force), x(positions);
+	meter->add(scene->iter, f, x);
 }
 
-void MembranePressure::bookWork()
-{
-	if (scene->trackEnergy) scene->energy->add(-work, "pressureWork", energyIndex, /*reset*/ true);
-}
+void MembranePressure::bookWorks() { meter->book(*scene, "pressureWork"); }
 
 Vector3r MembranePressure::forceOn(int v) const { return tube ? tube->force.get(v / membrane->perRing, v % membrane->perRing) : force[v]; }
-
-Vector3r MembranePressure::positionOf(int v) const { return tube ? rows.get(v / membrane->perRing, v % membrane->perRing) : positions[v]; }
 
 void MembranePressure::requireStepped(const char* what) const
 {

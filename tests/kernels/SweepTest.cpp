@@ -30,7 +30,8 @@ std::vector<Case> cases(int count)
 		const Vec3 before = anywhere(1).normalized();
 		Case one{};
 		const Vec3 normal = (before + anywhere(1e-3)).normalized();
-		one.meeting = {normal, random.uniform(-0.3e-5, 1e-5), {anywhere(1), anywhere(300)}, {anywhere(1), anywhere(300)}, 1e-3 * normal, -2e-3 * normal};
+		one.meeting = {normal,        random.uniform(-0.3e-5, 1e-5), {anywhere(1), anywhere(300)}, {anywhere(1), anywhere(300)}, 1e-3 * normal,
+		               -2e-3 * normal};
 		one.kind = {c % 11 == 0 ? 0 : random.uniform(0, 2), c % 3 == 0 ? 0 : random.uniform(0.01, 2)};
 		one.springs = {1e5, c % 5 == 0 ? 0 : 3e4, random.uniform(0.5e-3, 1e-3)};
 		one.contact = {noMemory(), {lawOf(one.springs, one.kind), 0, 0}, static_cast<unsigned char>(c % 7 ? contactTouching : 0)};
@@ -111,7 +112,8 @@ Expected plainly(const Case& one)
 	e.normal = m.overlap < 0 ? 0 : one.springs.kn * m.overlap;
 	const double r = one.springs.rollingRadius;
 	e.shear = spring(turned(one.contact.memory.shear), relative, one.springs.ks, one.kind.friction * e.normal, e.slip);
-	e.moment = spring(turned(one.contact.memory.moment), m.body2.spin - m.body1.spin, one.springs.ks * r * r, one.kind.rollingFriction * r * e.normal, e.roll);
+	e.moment =
+	        spring(turned(one.contact.memory.moment), m.body2.spin - m.body1.spin, one.springs.ks * r * r, one.kind.rollingFriction * r * e.normal, e.roll);
 	return e;
 }
 

@@ -47,7 +47,11 @@ HEXMEMBRANE_INLINE Lanes squareRoot(Lanes v)
 HEXMEMBRANE_INLINE double squareRoot(double v) { return std::sqrt(v); }
 
 /// The larger one; a NaN in `a` gives b, one in `b` stays.
-template <class V> HEXMEMBRANE_INLINE V larger(V a, V b) { return a > b ? a : b; }
+template <class V>
+HEXMEMBRANE_INLINE V larger(V a, V b)
+{
+	return a > b ? a : b;
+}
 
 /// Rows become columns: four records of four numbers become the four numbers of four records, and back.
 HEXMEMBRANE_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d)
@@ -79,19 +83,28 @@ HEXMEMBRANE_INLINE Vec3 acrossNormal(const Vec3& v, const Vec3& n) { return v - 
 HEXMEMBRANE_INLINE Lanes3 acrossNormal(const Lanes3& v, const Lanes3& n) { return v - dot(n, v) * n; }
 
 /// What a formula is written over: one number (V = double) or four (V = Lanes). `mask ? a : b` is a branch for the one and a choice lane by lane for the other.
-template <class V> struct Width;
-template <> struct Width<double> {
+template <class V>
+struct Width;
+template <>
+struct Width<double> {
 	using Vector = Vec3;
 	using Mask = bool;
 	static double constant(double value) { return value; }
 };
-template <> struct Width<Lanes> {
+template <>
+struct Width<Lanes> {
 	using Vector = Lanes3;
 	using Mask = LaneMask;
 	HEXMEMBRANE_INLINE static Lanes constant(double value) { return lanes(value); }
 };
-template <class V> using Vector = typename Width<V>::Vector;
-template <class V> using Mask = typename Width<V>::Mask;
-template <class V> HEXMEMBRANE_INLINE V constant(double value) { return Width<V>::constant(value); }
+template <class V>
+using Vector = typename Width<V>::Vector;
+template <class V>
+using Mask = typename Width<V>::Mask;
+template <class V>
+HEXMEMBRANE_INLINE V constant(double value)
+{
+	return Width<V>::constant(value);
+}
 
 } // namespace hexmembrane

@@ -34,7 +34,8 @@ public:
 };
 
 /// A boundary from a plain struct of doubles with touch(sphere), near(sphere, gap) and wayFrom(then).
-template <class Shape> class BoundaryOf : public BoundaryShape {
+template <class Shape>
+class BoundaryOf : public BoundaryShape {
 public:
 	explicit BoundaryOf(const Shape& s) : shape(s) {}
 	BoundaryTouch touch(const Place& sphere) const override { return shape.touch(sphere); }
@@ -63,6 +64,10 @@ private:
 	Shape shape;
 };
 
-template <class Shape> std::shared_ptr<const BoundaryShape> boundaryShape(const Shape& shape) { return std::make_shared<BoundaryOf<Shape>>(shape); }
+template <class Shape>
+std::shared_ptr<const BoundaryShape> boundaryShape(const Shape& shape)
+{
+	return std::make_shared<BoundaryOf<Shape>>(shape);
+}
 
 } // namespace hexmembrane

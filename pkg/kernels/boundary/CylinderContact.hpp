@@ -37,7 +37,8 @@ struct CylinderBoundary {
 	}
 	bool near(const Place& sphere, double gap) const
 	{
-		return cylinderContact(centre, radius, sphere.centre, sphere.radius + gap).penetration >= 0 && std::abs(sphere.centre[2] - centre[2]) <= halfHeight + gap;
+		return cylinderContact(centre, radius, sphere.centre, sphere.radius + gap).penetration >= 0 &&
+		       std::abs(sphere.centre[2] - centre[2]) <= halfHeight + gap;
 	}
 	double wayFrom(const CylinderBoundary& then) const
 	{

@@ -109,7 +109,7 @@ struct PlatenBoundary {
 	double wayFrom(const PlatenBoundary& then) const
 	{
 		return (solid.centre - then.solid.centre).norm() + (solid.axis - then.solid.axis).norm() * std::hypot(solid.radius, solid.halfHeight) +
-		        std::abs(solid.radius - then.solid.radius) + std::abs(solid.halfHeight - then.solid.halfHeight);
+		       std::abs(solid.radius - then.solid.radius) + std::abs(solid.halfHeight - then.solid.halfHeight);
 	}
 };
 

@@ -4,6 +4,7 @@
 #include "kernels/compact/ContactStore.hpp"
 #include "kernels/boundary/BoundaryShape.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -22,6 +23,7 @@ struct Boundary {
 struct alignas(64) BoundaryLoad {
 	Load load = noLoad();
 	double normalForce = 0, normalStiffness = 0;
+	int count = 0; ///< of contacts
 	SweepSums sums;
 
 	BoundaryLoad& operator+=(const BoundaryLoad& other)
@@ -29,6 +31,7 @@ struct alignas(64) BoundaryLoad {
 		load += other.load;
 		normalForce += other.normalForce;
 		normalStiffness += other.normalStiffness;
+		count += other.count;
 		sums += other.sums;
 		return *this;
 	}
@@ -43,8 +46,8 @@ public:
 	void rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfSphere& springs);
 
 	/// One step of the spheres from .. to - 1: their loads are added, what the boundary receives is added to `received`.
-	void sweep(int from, int to, const Boundary& boundary, const std::vector<Place>& places, const std::vector<Motion>& motions,
-	           std::vector<Load>& loads, double dt, BoundaryLoad& received);
+	void sweep(int from, int to, const Boundary& boundary, const std::vector<Place>& places, const std::vector<Motion>& motions, std::vector<Load>& loads,
+	           double dt, BoundaryLoad& received);
 
 	/// Summed stiffness along a unit vector: sum of kn c^2 + ks (1 - c^2), c the cosine between normal and vector (N/m).
 	double stiffness(const Vec3& along) const;
@@ -63,6 +66,7 @@ public:
 		for (int i : spheres) visit(i);
 	}
 	bool restore(int sphere, const Contact& contact);
+	bool has(int sphere) const { return std::binary_search(spheres.begin(), spheres.end(), sphere); }
 	int size() const { return int(spheres.size()); }
 
 private:

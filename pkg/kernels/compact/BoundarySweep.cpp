@@ -45,6 +45,7 @@ struct BoundaryGeometry {
 		s.loads[s.spheres[c]] += {force, arm2.cross(force) + moment};
 		received.load += {-force, -arm1.cross(force) - moment};
 		received.normalForce += normalForce;
+		++received.count;
 		received.normalStiffness += s.store->contacts[c].springs.kn;
 	}
 	void act(int c, const Meeting& m, const ContactStep& step, const Contact& contact) const

@@ -11,7 +11,8 @@ namespace hexmembrane {
 
 /// A contact as it is stored, one and a half cache lines, or four of them as lanes: a sweep over many contacts waits for memory, so what can be had otherwise
 /// (the parameters of its kind) is not in it. Filled up to rows of four numbers.
-template <class V> struct StoredContact {
+template <class V>
+struct StoredContact {
 	ContactMemory<V> memory;
 	PairSprings<V> springs;
 
@@ -77,11 +78,13 @@ struct FourContacts {
 private:
 	static_assert(sizeof(PairKind<Lanes>) == 4 * sizeof(PairKind<double>), "a kind is its numbers");
 
-	template <int row> HEXMEMBRANE_INLINE double* at(const StoredContact<double>* all, int k) const
+	template <int row>
+	HEXMEMBRANE_INLINE double* at(const StoredContact<double>* all, int k) const
 	{
 		return const_cast<double*>(reinterpret_cast<const double*>(all + index[k])) + 4 * row;
 	}
-	template <int... row> HEXMEMBRANE_INLINE void load(const StoredContact<double>* all, Lanes* lanes, std::integer_sequence<int, row...>) const
+	template <int... row>
+	HEXMEMBRANE_INLINE void load(const StoredContact<double>* all, Lanes* lanes, std::integer_sequence<int, row...>) const
 	{
 		(loadRow(load4(at<row>(all, 0)), load4(at<row>(all, 1)), load4(at<row>(all, 2)), load4(at<row>(all, 3)), lanes + 4 * row), ...);
 	}
@@ -93,9 +96,11 @@ private:
 		lanes[2] = c;
 		lanes[3] = d;
 	}
-	template <int... row> HEXMEMBRANE_INLINE void save(const Lanes* lanes, StoredContact<double>* all, std::integer_sequence<int, row...>) const
+	template <int... row>
+	HEXMEMBRANE_INLINE void save(const Lanes* lanes, StoredContact<double>* all, std::integer_sequence<int, row...>) const
 	{
-		(saveRow(lanes[4 * row], lanes[4 * row + 1], lanes[4 * row + 2], lanes[4 * row + 3], at<row>(all, 0), at<row>(all, 1), at<row>(all, 2), at<row>(all, 3)),
+		(saveRow(lanes[4 * row], lanes[4 * row + 1], lanes[4 * row + 2], lanes[4 * row + 3], at<row>(all, 0), at<row>(all, 1), at<row>(all, 2),
+		         at<row>(all, 3)),
 		 ...);
 	}
 	static HEXMEMBRANE_INLINE void saveRow(Lanes a, Lanes b, Lanes c, Lanes d, double* toA, double* toB, double* toC, double* toD)
@@ -106,12 +111,13 @@ private:
 		store4(toC, c);
 		store4(toD, d);
 	}
-	template <int... number> HEXMEMBRANE_INLINE void gather(const ContactStore& store, Lanes* lanes, std::integer_sequence<int, number...>) const
+	template <int... number>
+	HEXMEMBRANE_INLINE void gather(const ContactStore& store, Lanes* lanes, std::integer_sequence<int, number...>) const
 	{
 		const PairKind<double>* const table = store.table.data();
 		const std::uint16_t* const kinds = store.kinds.data();
 		const auto *a = reinterpret_cast<const double*>(table + kinds[index[0]]), *b = reinterpret_cast<const double*>(table + kinds[index[1]]),
-			   *c = reinterpret_cast<const double*>(table + kinds[index[2]]), *d = reinterpret_cast<const double*>(table + kinds[index[3]]);
+		           *c = reinterpret_cast<const double*>(table + kinds[index[2]]), *d = reinterpret_cast<const double*>(table + kinds[index[3]]);
 		((lanes[number] = Lanes{a[number], b[number], c[number], d[number]}), ...);
 	}
 };

@@ -21,9 +21,8 @@ CriticalStep::CriticalStep(const SphereAssembly& flat) : grains(flat.grains())
 		const double u = a.radius + b.radius - branch.norm();
 		add(i, j, normal, (a.radius - 0.5 * u) * normal, -(b.radius - 0.5 * u) * normal, stickingSprings(contact.law));
 	});
-	flat.smooth.forEachTouching(flat.places, [&](int i, int j, double kn, double, const Vec3& normal) {
-		add(i, j, normal, Vec3::Zero(), Vec3::Zero(), {kn, 0, 0, 0, 0});
-	});
+	flat.smooth.forEachTouching(
+	        flat.places, [&](int i, int j, double kn, double, const Vec3& normal) { add(i, j, normal, Vec3::Zero(), Vec3::Zero(), {kn, 0, 0, 0, 0}); });
 	for (std::size_t b = 0; b < flat.boundaries.size(); ++b)
 		flat.boundaryContacts[b].forEachTouching([&](int i, const Contact& contact) {
 			const BoundaryTouch touch = flat.boundaries[b].shape->touch(flat.places[i]);

@@ -48,7 +48,7 @@ private:
 	int firstParticle = 0;
 	std::vector<int> start, length, other; ///< by grain, each row filled up to fours
 	std::vector<double> kn;
-	std::vector<PaddedForce> forces;              ///< on the particle
+	std::vector<PaddedForce> forces;       ///< on the particle
 	std::vector<int> particleStart, place; ///< by particle: where its pairs stand
 };
 

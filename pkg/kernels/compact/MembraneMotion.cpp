@@ -178,10 +178,11 @@ int MembraneMotion::move(double dt, double damping, double limit, std::vector<Te
 		int fused = -1;
 		for (int t = 0; t < int(terms.size()); ++t)
 			if (terms[t].worked && terms[t].first <= k && k <= terms[t].last) fused = t;
-		const auto addOthers = [&](double Powers::*part) {
+		const auto addOthers = [&](double Powers::* part) {
 			for (int t = 0; t < fused; ++t)
 				if (terms[t].worked && terms[t].first <= k && k <= terms[t].last)
-					for (int a = 0; a < 3; ++a) termPart[k * terms.size() + t].*part += dot(n, terms[t].force->row(a, k), velocity.row(a, k));
+					for (int a = 0; a < 3; ++a)
+						termPart[k * terms.size() + t].*part += dot(n, terms[t].force->row(a, k), velocity.row(a, k));
 		};
 		addOthers(&Powers::before);
 		for (int a = 0; a < 3; ++a) {

@@ -54,8 +54,8 @@ public:
 	int move(double dt, double damping, double limit, std::vector<Term>& terms, std::vector<Grip>& grips, const Contacts& contacts, PaddedRings& position,
 	         PaddedRings& velocity, bool energies, int threads);
 	/// The same for the spins. \param torques besides those of contacts
-	int moveSpins(double dt, double damping, double inertia, const std::vector<const PaddedRings*>& torques, const Load* loads, PaddedRings& spin, Motion* motions,
-	              bool energies);
+	int moveSpins(double dt, double damping, double inertia, const std::vector<const PaddedRings*>& torques, const Load* loads, PaddedRings& spin,
+	              Motion* motions, bool energies);
 
 	/// Velocities of all particles.
 	void giveVelocities(const PaddedRings& velocity, Motion* motions) const;

@@ -5,6 +5,7 @@
 #include "kernels/compact/ThreadPartition.hpp"
 #include "kernels/base/CellGrid.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -51,6 +52,7 @@ public:
 	}
 	/// Puts a contact into the list; parameters but the strengths of its bond are those that the list has. \return false when the pair is not in it
 	bool restore(int i, int j, const Contact& contact);
+	bool has(int i, int j) const { return find(std::min(i, j), std::max(i, j)) >= 0; }
 
 	int size() const { return int(pairs.other.size()); }
 

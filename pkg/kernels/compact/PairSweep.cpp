@@ -111,8 +111,8 @@ struct PairGeometry {
 		four.motion.spinDifference = {low[3], high[0], high[1]};
 		four.motion.spinSum = {firstSpin[3], high[2], high[3]};
 		// arm1 spin1 + arm2 spin2
-		const Lanes3 turning = (0.5 * (batch.arm1[f] + batch.arm2[f])) * four.motion.spinSum +
-		        (0.5 * (batch.arm2[f] - batch.arm1[f])) * four.motion.spinDifference;
+		const Lanes3 turning =
+		        (0.5 * (batch.arm1[f] + batch.arm2[f])) * four.motion.spinSum + (0.5 * (batch.arm2[f] - batch.arm1[f])) * four.motion.spinDifference;
 		four.motion.velocity = Lanes3{low[0], low[1], low[2]} - cross(turning, four.normal);
 	}
 

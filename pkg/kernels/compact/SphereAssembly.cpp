@@ -47,8 +47,7 @@ void SphereAssembly::setSpheres(const std::vector<Sphere>& all, int count)
 void SphereAssembly::setMaterials(const std::vector<ContactMaterial>& table)
 {
 	if (table == materials) return;
-	if (table.size() > 255)
-		reject("materials", double(table.size()), "too many", "255 materials at most: bodies with the same parameters can share one");
+	if (table.size() > 255) reject("materials", double(table.size()), "too many", "255 materials at most: bodies with the same parameters can share one");
 	materials = table;
 	kinds.clear();
 	for (const ContactMaterial& a : table)
@@ -96,10 +95,15 @@ void SphereAssembly::sortGrains(std::vector<int>& newIndex)
 	grid.fill(centres);
 	const std::vector<int>& order = grid.order();
 	for (int i = 0; i < grainCount; ++i) newIndex[order[i]] = i;
+	permuteGrains(order);
+}
+
+void SphereAssembly::permuteGrains(const std::vector<int>& from)
+{
 	const auto permute = [&](auto& field) {
 		if (field.empty()) return;
 		auto before = field;
-		for (int i = 0; i < grainCount; ++i) field[i] = before[order[i]];
+		for (int i = 0; i < grainCount; ++i) field[i] = before[from[i]];
 	};
 	permute(id);
 	permute(places);
@@ -159,20 +163,6 @@ void SphereAssembly::findPairs(NearPairs& general, std::vector<FrictionlessConta
 		for (const auto& part : smoothParts) frictionless.insert(frictionless.end(), part.begin(), part.end());
 		for (const auto& part : extraParts) extra.insert(extra.end(), part.begin(), part.end());
 	}
-	if (bondedNeighbours) {
-		std::vector<Vec3> particles(listed.begin() + grainCount, listed.end());
-		std::vector<double> sizes;
-		Vec3 least = particles[0], most = particles[0];
-		for (int m = grainCount; m < all; ++m) {
-			sizes.push_back(places[m].radius);
-			least = least.cwiseMin(listed[m]);
-			most = most.cwiseMax(listed[m]);
-		}
-		const NearPairs own = findNearPairs(particles, sizes, gap, least, most);
-		for (int a = 0; a + 1 < int(own.start.size()); ++a)
-			for (int p = own.start[a]; p < own.start[a + 1]; ++p)
-				if (!bondedNeighbours(a, own.other[p])) extra.push_back({grainCount + a, grainCount + own.other[p]});
-	}
 	if (extra.empty()) return;
 	// particles' indices are above all grains': appended to a row they leave it ascending
 	std::sort(extra.begin(), extra.end());
@@ -205,17 +195,35 @@ void SphereAssembly::buildLists(const std::vector<int>& newIndex)
 	}
 }
 
+int SphereAssembly::nowhere() const
+{
+	for (std::size_t i = 0; i < places.size(); ++i)
+		if (!std::isfinite(places[i].centre.sum())) return id[i];
+	return -1;
+}
+
 void SphereAssembly::makeLists()
 {
+	const int lost = nowhere();
+	if (lost >= 0) reject("places", "not finite for sphere " + std::to_string(lost), "no list can be made", "find out what sent it away");
 	std::vector<int> newIndex;
 	sortGrains(newIndex);
 	listed.resize(places.size());
 	for (std::size_t i = 0; i < places.size(); ++i) listed[i] = places[i].centre;
-	listedShapes.clear();
-	for (const Boundary& boundary : boundaries) listedShapes.push_back(boundary.shape);
+	listedShapes = shapes();
 	travelled = 0;
 	buildLists(newIndex);
 	++made;
+}
+
+void SphereAssembly::continueLists(const std::vector<Vec3>& centres, const std::vector<std::shared_ptr<const BoundaryShape>>& shapesThen, double travelledSince)
+{
+	listed = centres;
+	listedShapes = shapesThen;
+	travelled = travelledSince;
+	std::vector<int> same(places.size());
+	std::iota(same.begin(), same.end(), 0);
+	buildLists(same);
 }
 
 void SphereAssembly::divide(int threads)

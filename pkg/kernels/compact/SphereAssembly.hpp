@@ -34,20 +34,24 @@ public:
 	double skin() const { return gap; }
 	/// Parameters of all materials; contacts follow at once. A membrane particle that touches a grain without friction needs no memory.
 	void setMaterials(const std::vector<ContactMaterial>& table);
-	/// Pairs of membrane particles are left out of the lists, unless this is set: `bonded(a, b)` says which are neighbours in the membrane.
-	void setMembraneContacts(std::function<bool(int, int)> bonded) { bondedNeighbours = std::move(bonded); }
-
 	const ContactMaterial& materialOf(int index) const { return materials[index]; }
 	/// Law of a contact of two spheres, or of a sphere with boundary b, without a bond.
 	ContactLaw lawOf(int i, int j) const { return sphereLaw(materials[material[i]], materials[material[j]], places[i].radius, places[j].radius); }
 	ContactLaw boundaryLawOf(int b, int i) const { return boundaryLaw(materials[boundaries[b].material], materials[material[i]], places[i].radius); }
+
+	/// Whether a contact of these two has neither friction nor rolling resistance.
+	bool isSmooth(int i, int j) const { return normalOnly(kinds[kindOfPair(material[i], material[j])]); }
 
 	int spheres() const { return int(places.size()); }
 	int grains() const { return grainCount; }
 
 	/// Whether the lists hold every contact at the present positions. Measures how far spheres have moved when it must.
 	bool listsHold();
-	/// Sorts the grains and makes all lists anew; memories of contacts move over.
+	/// Id of a sphere whose place is not finite, -1: none.
+	int nowhere() const;
+	/// Gives the grains another order: the one at place i was at from[i] before. Lists are to be made anew.
+	void permuteGrains(const std::vector<int>& from);
+	/// Sorts the grains and makes all lists anew; memories of contacts move over. \throws FieldError for a sphere that is nowhere, before anything is changed
 	void makeLists();
 	/// Steps at which lists were made so far.
 	long listsMade() const { return made; }
@@ -67,6 +71,12 @@ public:
 	{
 		noteWay(shape->wayFrom(*boundaries[b].shape));
 		boundaries[b].shape = std::move(shape);
+	}
+	std::vector<std::shared_ptr<const BoundaryShape>> shapes() const
+	{
+		std::vector<std::shared_ptr<const BoundaryShape>> all;
+		for (const Boundary& boundary : boundaries) all.push_back(boundary.shape);
+		return all;
 	}
 	/// Counts a way (m) of another sphere in this step against the skin.
 	void noteWay(double way) { furthest = std::max(furthest, way); }
@@ -89,7 +99,7 @@ public:
 	std::vector<Boundary> boundaries;
 
 	// Results of computeLoads()
-	std::vector<Load> loads;      ///< on grains; on particles what contacts with memory and `outside` do
+	std::vector<Load> loads;             ///< on grains; on particles what contacts with memory and `outside` do
 	std::vector<PaddedForce> onParticle; ///< what frictionless contacts do to the membrane's particles (N)
 	std::vector<BoundaryLoad> onBoundary;
 	SweepSums sums;        ///< of all steps since it was last reset
@@ -102,15 +112,17 @@ public:
 	std::vector<BoundaryContacts> boundaryContacts;
 
 	// What lists were made from: part of the state that is saved
-	std::vector<Vec3> listed; ///< centres
+	std::vector<Vec3> listed;                                       ///< centres
 	std::vector<std::shared_ptr<const BoundaryShape>> listedShapes; ///< of the boundaries
-	double travelled = 0; ///< upper bound of every sphere's way since (m)
-	/// Lists from `listed` and `listedShapes` without sorting: what makeLists() ends with, and what a loaded state begins with.
-	void buildLists(const std::vector<int>& newIndex);
+	double travelled = 0;                                           ///< upper bound of every sphere's way since (m)
+	/// The lists of a saved state: from the centres and shapes that it had made them from, without sorting.
+	void continueLists(const std::vector<Vec3>& centres, const std::vector<std::shared_ptr<const BoundaryShape>>& shapesThen, double travelledSince);
 
 	double elasticEnergy() const;
 
 private:
+	/// Lists from `listed` and `listedShapes`.
+	void buildLists(const std::vector<int>& newIndex);
 	void sortGrains(std::vector<int>& newIndex);
 	/// The division of the spheres among so many threads.
 	void divide(int threads);
@@ -119,16 +131,14 @@ private:
 	int kindOfPair(int a, int b) const { return a * int(materials.size()) + b; }
 	SpringsOfKind springsOf(int i, int j) const
 	{
-		return {sphereSprings(materials[material[i]], materials[material[j]], places[i].radius, places[j].radius), kindOfPair(material[i], material[j])};
+		return {sphereSprings(materials[material[i]], materials[material[j]], places[i].radius, places[j].radius),
+		        kindOfPair(material[i], material[j])};
 	}
 	SpringsOfKind springsOf(const Boundary& boundary, int i) const
 	{
 		return {boundarySprings(materials[boundary.material], materials[material[i]], places[i].radius), kindOfPair(boundary.material, material[i])};
 	}
 	void findPairs(NearPairs& general, std::vector<FrictionlessContacts::Pair>& frictionless) const;
-	/// Whether a contact of these two has neither friction nor rolling resistance.
-	bool isSmooth(int i, int j) const { return normalOnly(kinds[kindOfPair(material[i], material[j])]); }
-
 	ThreadPartition runs; ///< of the present lists; none: to be made
 	int grainCount = 0;
 	std::vector<int> loaded;
@@ -137,7 +147,6 @@ private:
 	long made = 0;
 	std::vector<ContactMaterial> materials;
 	std::vector<PairKind<double>> kinds; ///< of every pair of materials
-	std::function<bool(int, int)> bondedNeighbours;
 };
 
 } // namespace hexmembrane

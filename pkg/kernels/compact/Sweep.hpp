@@ -36,7 +36,8 @@ HEXMEMBRANE_INLINE void advanceFour(ContactStore& store, const int* index, FourP
 	const FourContacts at{index};
 	StoredContact<Lanes> contact = at.contacts(store);
 	carry<Lanes>(contact.memory, four.normal, four.motion.spinSum, lanes(dt));
-	const Lanes3 slide = lanes(dt) * acrossNormal(four.motion.velocity, four.normal), bend = lanes(dt) * acrossNormal(four.motion.spinDifference, four.normal);
+	const Lanes3 slide = lanes(dt) * acrossNormal(four.motion.velocity, four.normal),
+	             bend = lanes(dt) * acrossNormal(four.motion.spinDifference, four.normal);
 	const UnbondedStep<Lanes> step =
 	        advanceUnbonded<Lanes>(lawOf(contact.springs, at.kinds(store)), four.overlap, slide, bend, contact.memory.shear, contact.memory.moment);
 	at.put(contact, store);
@@ -58,7 +59,8 @@ constexpr int sweepStretch = 64;
 ///   void measure(batch, f)     normal and overlap of four f        void follow(batch, f)   how its bodies move
 ///   void act(batch, f)         loads of four f on the bodies       Meeting meet(p)         of one contact
 ///   void act(p, meeting, step, contact)                            loads of one contact that has not opened
-template <class Geometry> HEXMEMBRANE_INLINE void sweepContacts(Geometry& geometry, ContactStore& store, int begin, int end, double dt, SweepSums& sums)
+template <class Geometry>
+HEXMEMBRANE_INLINE void sweepContacts(Geometry& geometry, ContactStore& store, int begin, int end, double dt, SweepSums& sums)
 {
 	const auto one = [&](int p) {
 		const Meeting meeting = geometry.meet(p);

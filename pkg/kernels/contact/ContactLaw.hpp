@@ -47,7 +47,8 @@ inline Springs inSeries(const Springs& a, const Springs& b)
 }
 
 /// Parameters of an unbonded contact. Nothing is checked: who makes contacts checks.
-template <class V> struct LinearLaw {
+template <class V>
+struct LinearLaw {
 	V kn;         ///< normal stiffness (N/m), > 0
 	V ks;         ///< shear stiffness (N/m), >= 0
 	V friction;   ///< coefficient mu (-), >= 0
@@ -78,7 +79,8 @@ struct ContactWorks {
 	double bond = 0; ///< elastic energy set free by the break of a bond
 
 	/// Calls visit(name, value) for each; the names are those of YADE's energies.
-	template <class Self, class Visit> static void forEach(Self& works, Visit&& visit)
+	template <class Self, class Visit>
+	static void forEach(Self& works, Visit&& visit)
 	{
 		visit("plastDissip", works.slip);
 		visit("rollDissip", works.roll);
@@ -110,7 +112,8 @@ inline Vec3 relativeVelocity(const Vec3& velocity1, const Vec3& spin1, const Vec
 /// A remembered load turned with its contact, v + tilt x v, then v + twist x v: `tilt` is the rotation of the normal (rad), previous normal x normal, `twist` that
 /// about the previous normal, by the mean spin of the two bodies. First order: a step that turns by the angle a makes the load longer by a^2/2 at most and leaves
 /// a part a^2 of it along the normal. The same formula as YADE's ScGeom::rotate, so that a contact is the same in both tiers.
-template <class W> HEXMEMBRANE_INLINE W carried(const W& load, const W& tilt, const W& twist)
+template <class W>
+HEXMEMBRANE_INLINE W carried(const W& load, const W& tilt, const W& twist)
 {
 	const W tilted = load - cross(load, tilt);
 	return tilted - cross(tilted, twist);
@@ -170,13 +173,15 @@ inline ContactStep advanceBond(const ContactLaw& law, const ContactMotion& motio
 }
 
 /// A step of the spring of shear or of rolling, first half: the trial load, and whether it is above its limit.
-template <class V> struct SpringTrial {
+template <class V>
+struct SpringTrial {
 	Vector<V> before, trial;
 	V square, limit;
 	Mask<V> open, gone, cut;
 
 	HEXMEMBRANE_INLINE SpringTrial(const Vector<V>& load, const Vector<V>& displacement, V stiffness, V most, Mask<V> opened)
-	    : before(load), trial(load - stiffness * displacement), square(dot(trial, trial)), limit(most), open(opened), gone(opened), cut(square > most * most)
+	    : before(load), trial(load - stiffness * displacement), square(dot(trial, trial)), limit(most), open(opened), gone(opened),
+	      cut(square > most * most)
 	{
 		if constexpr (std::is_same<V, double>::value) gone = opened || !(stiffness > 0);
 	}
@@ -196,7 +201,8 @@ template <class V> struct SpringTrial {
 };
 
 /// 1/a and 1/b by one quotient: it takes as long as ten products. Both are taken as 1e-100 at least.
-template <class V> HEXMEMBRANE_INLINE void invert(V& a, V& b)
+template <class V>
+HEXMEMBRANE_INLINE void invert(V& a, V& b)
 {
 	a = larger(a, constant<V>(1e-100));
 	b = larger(b, constant<V>(1e-100));
@@ -206,7 +212,8 @@ template <class V> HEXMEMBRANE_INLINE void invert(V& a, V& b)
 }
 
 /// What a step of an unbonded contact brought.
-template <class V> struct UnbondedStep {
+template <class V>
+struct UnbondedStep {
 	V normal; ///< N (N)
 	Mask<V> open;
 	V slip, roll; ///< as in ContactWorks (J)
@@ -252,7 +259,8 @@ inline ContactStep advanceContact(const ContactLaw& law, const ContactMotion& mo
 }
 
 /// What a contact remembers from step to step.
-template <class V> struct ContactMemory {
+template <class V>
+struct ContactMemory {
 	Vector<V> shear;  ///< shear force on body 2 (N)
 	Vector<V> moment; ///< bending moment on it (N m)
 	Vector<V> normal; ///< of the last step
@@ -270,13 +278,15 @@ inline ContactMemory<double> withoutLostSprings(ContactMemory<double> memory, co
 }
 
 /// How the two bodies of a contact move.
-template <class V> struct PairMotion {
+template <class V>
+struct PairMotion {
 	Vector<V> velocity;                ///< of body 2 against body 1 at the contact point (m/s)
 	Vector<V> spinSum, spinDifference; ///< of both spins, and of body 2 against body 1 (rad/s)
 };
 
 /// Carries what the contact remembers to its present normal.
-template <class V> HEXMEMBRANE_INLINE void carry(ContactMemory<V>& memory, const Vector<V>& normal, const Vector<V>& spinSum, V dt)
+template <class V>
+HEXMEMBRANE_INLINE void carry(ContactMemory<V>& memory, const Vector<V>& normal, const Vector<V>& spinSum, V dt)
 {
 	const Vector<V> tilt = cross(memory.normal, normal), twist = (0.5 * dt * dot(memory.normal, spinSum)) * memory.normal;
 	memory.shear = carried(memory.shear, tilt, twist);

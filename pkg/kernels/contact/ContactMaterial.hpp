@@ -29,7 +29,8 @@ struct ContactMaterial {
 };
 
 /// Parameters of a pair of materials that do not depend on the bodies' sizes: they have few values in a scene.
-template <class V> struct PairKind {
+template <class V>
+struct PairKind {
 	V friction, rollingFriction; ///< coefficients mu and mu_r (-)
 };
 
@@ -43,7 +44,8 @@ inline PairKind<double> kindOf(const ContactMaterial& a, const ContactMaterial& 
 inline bool normalOnly(const PairKind<double>& kind) { return !(kind.friction > 0) && !(kind.rollingFriction > 0); }
 
 /// Parameters of a pair of bodies that depend on their sizes.
-template <class V> struct PairSprings {
+template <class V>
+struct PairSprings {
 	V kn, ks;        ///< stiffnesses (N/m)
 	V rollingRadius; ///< Rbar (m)
 };
@@ -63,9 +65,11 @@ inline PairSprings<double> sphereSprings(const ContactMaterial& a, const Contact
 inline PairSprings<double> boundarySprings(const ContactMaterial& a, const ContactMaterial& b, double r) { return springsOfShape(a, b, contactShape(r), r); }
 
 /// The law of an unbonded contact: kr = ks Rbar^2, moment at most mu_r Rbar N.
-template <class V> HEXMEMBRANE_INLINE LinearLaw<V> lawOf(const PairSprings<V>& springs, const PairKind<V>& kind)
+template <class V>
+HEXMEMBRANE_INLINE LinearLaw<V> lawOf(const PairSprings<V>& springs, const PairKind<V>& kind)
 {
-	return {springs.kn, springs.ks, kind.friction, springs.ks * springs.rollingRadius * springs.rollingRadius, kind.rollingFriction * springs.rollingRadius};
+	return {springs.kn, springs.ks, kind.friction, springs.ks * springs.rollingRadius * springs.rollingRadius,
+	        kind.rollingFriction * springs.rollingRadius};
 }
 
 /// Law of two spheres of radii r1 and r2 (m), without a bond.
