@@ -54,9 +54,7 @@ void MembraneORings::grip(int k, const Vector3r& velocity, vector<Vector3r>& hel
 
 void MembraneORings::bookWork(vector<Vector3r>& held, vector<Vector3r>& at)
 {
-	work += hexmembrane::trapezoidalWork(lastForces, lastPositions, held, at);
-	lastForces.swap(held);
-	lastPositions.swap(at);
+	work += hexmembrane::WorkMeter{lastIter, lastForces, lastPositions}.record(scene->iter, held, at);
 	bookEnergy();
 }
 

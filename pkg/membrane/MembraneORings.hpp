@@ -43,6 +43,7 @@ private:
 		((Real,work,0,Attr::readonly,"Work done by the O-rings on the membrane so far [J]: against the forces on its gripped particles, trapezoidal in force and displacement, and what these particles gained in kinetic energy; positive when the O-rings stretch the membrane."))
 		((vector<Vector3r>,lastForces,,(Attr::readonly|Attr::hidden),"Grip without inertia at the last step, for the work."))
 		((vector<Vector3r>,lastPositions,,(Attr::readonly|Attr::hidden),"Positions of the last step, for the work."))
+		((long,lastIter,-2,(Attr::readonly|Attr::hidden),"Iteration of the last step, for the work: what happens while the engine is dead is not its doing."))
 	);
 	// clang-format on
 };

@@ -4,6 +4,7 @@
 #include "GatherBodies.hpp"
 #include "base/NamedFields.hpp"
 #include "kernels/base/IntegralController.hpp"
+#include "kernels/base/TrapezoidalWork.hpp"
 
 namespace yade {
 
@@ -110,25 +111,20 @@ void MembranePressure::action()
 	} else
 		computeMesh();
 
-	// forces out, and the work since the last step by the trapezoidal rule, in one sweep
 	const int loadedCount = static_cast<int>(loaded.size());
-	const bool continued = static_cast<int>(lastForces.size()) == loadedCount && static_cast<int>(lastPositions.size()) == loadedCount;
-	lastForces.resize(loadedCount, Vector3r::Zero());
-	lastPositions.resize(loadedCount, Vector3r::Zero());
-	Real done = 0;
+	loadedForces.resize(loadedCount);
+	loadedPositions.resize(loadedCount);
 	int bad = -1;
-#pragma omp parallel for schedule(static) reduction(max : bad) reduction(+ : done)
+#pragma omp parallel for schedule(static) reduction(max : bad)
 	for (int l = 0; l < loadedCount; ++l) {
 		const int v = loaded[l];
-		const Vector3r f = forceOn(v), x = positionOf(v);
-		if (!isFinite(f)) bad = std::max(bad, v);
-		scene->forces.addForce(vertexIds[v], f);
-		done += 0.5 * (lastForces[l] + f).dot(x - lastPositions[l]);
-		lastForces[l] = f;
-		lastPositions[l] = x;
+		loadedForces[l] = forceOn(v);
+		loadedPositions[l] = positionOf(v);
+		if (!isFinite(loadedForces[l])) bad = std::max(bad, v);
+		scene->forces.addForce(vertexIds[v], loadedForces[l]);
 	}
 	if (bad >= 0) throwNotFinite("MembranePressure: force", vertexIds[bad], *scene);
-	if (continued) work += done;
+	work += hexmembrane::WorkMeter{lastIter, lastForces, lastPositions}.record(scene->iter, loadedForces, loadedPositions);
 	bookWork();
 }
 

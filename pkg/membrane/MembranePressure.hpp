@@ -48,6 +48,7 @@ private:
 	vector<Body::id_t> vertexIds;                    //!< bodies that are the vertices of the mesh
 	vector<int> loaded;                              //!< vertices that receive their force
 	vector<Vector3r> positions, force;               //!< of all vertices
+	vector<Vector3r> loadedForces, loadedPositions;  //!< of the loaded ones
 	const HexMembrane* builtFor = nullptr;
 	string builtSurface;
 	vector<Body::id_t> builtIds;
@@ -83,6 +84,7 @@ private:
 		((Real,work,0,Attr::readonly,"Work done by the pressure so far [J], trapezoidal in force and displacement; positive when the surface moves with the pressure."))
 		((vector<Vector3r>,lastForces,,(Attr::readonly|Attr::hidden),"Forces of the last step, for the work."))
 		((vector<Vector3r>,lastPositions,,(Attr::readonly|Attr::hidden),"Positions of the last step, for the work."))
+		((long,lastIter,-2,(Attr::readonly|Attr::hidden),"Iteration of the last step, for the work: what happens while the engine is dead is not its doing."))
 		,/*ctor*/,
 		.add_property("applied",&MembranePressure::applied,"Pressure on the triangles [Pa]: factor times pressure.")
 		.add_property("area",&MembranePressure::area,"Loaded area at the last step [m²]: a third of every triangle round each loaded particle.")

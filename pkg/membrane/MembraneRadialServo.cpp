@@ -76,9 +76,7 @@ void MembraneRadialServo::action()
 			x.push_back(positions.get(k, i));
 			scene->forces.addForce(membrane->ids[k * membrane->perRing + i], f.back());
 		}
-	work += hexmembrane::trapezoidalWork(lastForces, lastPositions, f, x);
-	lastForces.swap(f);
-	lastPositions.swap(x);
+	work += hexmembrane::WorkMeter{lastIter, lastForces, lastPositions}.record(scene->iter, f, x);
 	bookWork();
 }
 

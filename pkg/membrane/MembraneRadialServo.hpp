@@ -56,6 +56,7 @@ private:
 		((Real,work,0,Attr::readonly,"Work done by the forces so far [J], trapezoidal."))
 		((vector<Vector3r>,lastForces,,(Attr::readonly|Attr::hidden),"Forces of the last step, for the work."))
 		((vector<Vector3r>,lastPositions,,(Attr::readonly|Attr::hidden),"Positions of the last step, for the work."))
+		((long,lastIter,-2,(Attr::readonly|Attr::hidden),"Iteration of the last step, for the work: what happens while the engine is dead is not its doing."))
 	);
 	// clang-format on
 };
