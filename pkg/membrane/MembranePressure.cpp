@@ -75,19 +75,8 @@ void MembranePressure::prepare()
 
 void MembranePressure::computeMesh()
 {
-	const int count = static_cast<int>(vertexIds.size());
-	const auto& bodies = *scene->bodies;
-	int missing = -1;
-	positions.resize(count);
-#pragma omp parallel for schedule(static) reduction(max : missing)
-	for (int i = 0; i < count; ++i) {
-		prefetchAhead(bodies, vertexIds, i);
-		const Body* b = livingBody(bodies, vertexIds[i]);
-		if (b)
-			positions[i] = b->state->se3.position;
-		else
-			missing = std::max(missing, i);
-	}
+	positions.resize(vertexIds.size());
+	const int missing = forEachState(*scene->bodies, vertexIds, [this](int i, const State& state) { positions[i] = state.se3.position; });
 	if (missing >= 0)
 		throw std::runtime_error("MembranePressure: body " + std::to_string(vertexIds[missing]) + " of the loaded surface is gone (iteration " +
 		                         std::to_string(scene->iter) + "); fix: do not erase it, or load the last checkpoint");
