@@ -23,6 +23,23 @@ inline void prefetchAhead(const BodyContainer& bodies, const vector<Body::id_t>&
 	if (const Body* b = livingBody(bodies, ids[i + ahead])) __builtin_prefetch(&b->state->se3.position);
 }
 
+//! Calls take(i, state) for the body of every id, in parallel. Returns an index whose body is gone, -1: none; exceptions must not leave a parallel loop.
+template <typename Take>
+int forEachState(const BodyContainer& bodies, const vector<Body::id_t>& ids, Take&& take)
+{
+	const int count = static_cast<int>(ids.size());
+	int missing = -1;
+#pragma omp parallel for schedule(static) reduction(max : missing)
+	for (int i = 0; i < count; ++i) {
+		prefetchAhead(bodies, ids, i);
+		if (const Body* b = livingBody(bodies, ids[i]))
+			take(i, static_cast<const State&>(*b->state));
+		else
+			missing = std::max(missing, i);
+	}
+	return missing;
+}
+
 //! One comparison for three components: false for NaN and infinity, and for squares that overflow, which no force in a scene does.
 inline bool isFinite(const Vector3r& v) { return v.squaredNorm() < std::numeric_limits<Real>::infinity(); }
 

@@ -5,6 +5,8 @@
 
 #include <core/Scene.hpp>
 #include "kernels/base/Check.hpp"
+#include "kernels/base/WeightedMedian.hpp"
+#include "kernels/boundary/OverlappingRamps.hpp"
 #include "kernels/boundary/PlatenServo.hpp"
 
 #include <stdexcept>
@@ -85,16 +87,18 @@ void PlatenDrive::record(const State& state, Real newForce, const Vector3r& unit
 Real PlatenDrive::approachVelocity() const
 {
 	if (!math::isnan(maxVelocity)) return maxVelocity;
-	Real mass = 0, volume = 0;
+	// that of the grains: a membrane, whose density is often scaled, has less volume than what it encloses
+	vector<std::pair<Real, Real>> densities;
 	for (const auto& body : *scene->bodies) {
 		const auto* sphere = body ? dynamic_cast<const Sphere*>(body->shape.get()) : nullptr;
 		if (!sphere || !body->isDynamic()) continue;
-		mass += body->state->mass;
-		volume += 4. / 3 * M_PI * math::pow(sphere->radius, 3);
+		const Real volume = 4. / 3 * M_PI * math::pow(sphere->radius, 3);
+		densities.emplace_back(body->state->mass / volume, volume);
 	}
-	if (!(mass > 0))
+	const Real density = hexmembrane::weightedMedian(std::move(densities));
+	if (!(density > 0))
 		hexmembrane::reject("PlatenDrive.maxVelocity", maxVelocity, "no movable sphere with a mass to take it from", "give a velocity > 0 in m/s");
-	return approachNumber * math::sqrt(stress * volume / mass);
+	return approachNumber * math::sqrt(stress / density);
 }
 
 void PlatenDrive::beginPhase(Real newTarget, const State& state, const Vector3r& unit)
@@ -106,14 +110,25 @@ void PlatenDrive::beginPhase(Real newTarget, const State& state, const Vector3r&
 	phaseDuration = rampTime;
 	phaseTime = 0;
 	phaseVelocity = state.vel.dot(unit);
-	phaseForce = force;
+	ramps.clear();
+	hexmembrane::addRamp(ramps, newTarget - (mode == "stress" ? force : phaseVelocity), rampTime);
+	changeTime = 0;
+	phaseSettled = false;
+}
+
+void PlatenDrive::changeTarget(Real newTarget)
+{
+	if (mode == "stress") phaseApproach = approachVelocity();
+	hexmembrane::addRamp(ramps, newTarget - phaseTarget, rampTime);
+	phaseTarget = newTarget;
+	changeTime = 0;
 	phaseSettled = false;
 }
 
 Real PlatenDrive::servoStep(Real velocityNow)
 {
 	const Real dt = scene->dt;
-	const Real wanted = phaseForce + (phaseTarget - phaseForce) * hexmembrane::rampWeight(phaseTime, phaseDuration);
+	const Real wanted = phaseTarget - hexmembrane::stillToCome(ramps, 0);
 	if (stiffness > 0) {
 		const hexmembrane::PlatenServo servo = hexmembrane::makePlatenServo(stiffness, dt, phaseTarget, damping, mass, phaseApproach);
 		return hexmembrane::servoVelocity(servo, velocityNow, dt, wanted, force);
@@ -125,9 +140,9 @@ Real PlatenDrive::servoStep(Real velocityNow)
 
 void PlatenDrive::requireReached(Real newTarget)
 {
-	settled = phaseTime >= phaseDuration && math::abs(force - newTarget) <= tolerance * newTarget;
+	settled = ramps.empty() && math::abs(force - newTarget) <= tolerance * newTarget;
 	phaseSettled |= settled;
-	if (phaseSettled || !(phaseTime > timeLimit)) return;
+	if (phaseSettled || !(changeTime > timeLimit)) return;
 	stop("PlatenDrive.timeLimit = " + hexmembrane::formatNumber(timeLimit) + ": platen " + std::to_string(platen) + " carries " +
 	     hexmembrane::formatNumber(force) + " N of " + hexmembrane::formatNumber(newTarget) + " N after this time, at iteration " +
 	     std::to_string(scene->iter) + "; fix: is there a specimen in its way? give a longer timeLimit, or a larger maxVelocity");
@@ -152,23 +167,29 @@ void PlatenDrive::step(StepView& view)
 	const ContactSums met = view.contacts(platen);
 
 	record(state, 0 - met.force.dot(unit), unit); // 0 - x: no force is 0, not -0
-	if (mode != phaseMode || newTarget != phaseTarget || direction != phaseDirection) beginPhase(newTarget, state, unit);
+	const bool changed = newTarget != phaseTarget;
+	if (mode != phaseMode || direction != phaseDirection || (changed && ramps.empty()))
+		beginPhase(newTarget, state, unit);
+	else if (changed)
+		changeTarget(newTarget);
 
-	Real next = newTarget;
+	// The velocity set here holds half a step later, midway to the next position.
+	const Real ahead = 0.5 * scene->dt;
 	if (mode == "stress") {
 		requireReached(newTarget);
 		stiffness = math::isnan(contactStiffness) ? view.stiffness(platen, unit) : (met.count > 0 ? contactStiffness : 0);
-		next = servoStep(state.vel.dot(unit));
+		const Real next = servoStep(state.vel.dot(unit)), weight = hexmembrane::rampWeight(phaseTime + ahead, phaseDuration);
+		state.vel = (weight * next + (1 - weight) * phaseVelocity) * unit;
 	} else {
 		settled = false;
+		state.vel = (newTarget - hexmembrane::stillToCome(ramps, ahead)) * unit;
 	}
-	// The velocity set here holds half a step later, midway to the next position.
-	const Real weight = hexmembrane::rampWeight(phaseTime + 0.5 * scene->dt, phaseDuration);
-	state.vel = (weight * next + (1 - weight) * phaseVelocity) * unit;
 	state.angVel = Vector3r::Zero();
 	state.blockedDOFs = State::DOF_ALL;
 	state.isDamped = false; // else NewtonIntegrator books a dissipation that does not take place
 	phaseTime += scene->dt;
+	changeTime += scene->dt;
+	hexmembrane::advanceRamps(ramps, scene->dt);
 }
 
 } // namespace yade

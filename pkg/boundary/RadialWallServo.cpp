@@ -100,13 +100,15 @@ void RadialWallServo::step(StepView& view)
 	stiffness = met.normalStiffness;
 	const Real area = 2 * M_PI * shape.radius * specimenHeight();
 	radialStress = force / area;
-	if (!math::isnan(lastRadius)) {
+	// A gap in the steps (the engine was dead, or O.resetTime) is nobody's work.
+	if (scene->iter == lastIter + 1) {
 		const Real done = 0.5 * (lastForce + force) * (lastRadius - shape.radius);
 		work += done;
 		if (scene->trackEnergy) scene->energy->add(-done, "wallWork", energyIndex, /*reset every step*/ false);
 	}
 	lastForce = force;
 	lastRadius = shape.radius;
+	lastIter = scene->iter;
 	requireReached(stress);
 
 	const Real dt = scene->dt, target = stress * area;

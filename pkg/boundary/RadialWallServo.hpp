@@ -43,6 +43,7 @@ private:
 		((Real,work,0,Attr::readonly,"Work done on the specimen [J], trapezoidal. |yupdate|"))
 		((Real,lastForce,0,Attr::hidden,""))
 		((Real,lastRadius,NaN,Attr::hidden,""))
+		((long,lastIter,-2,Attr::hidden,""))
 		((Real,phaseTarget,NaN,Attr::hidden,""))
 		((Real,phaseTime,0,Attr::hidden,""))
 		((bool,phaseSettled,false,Attr::hidden,""))

@@ -18,12 +18,8 @@ void WorkMeter::add(long iter, const hexmembrane::MembraneMotion::HalfWorks& hal
 
 void WorkMeter::add(long iter, vector<Vector3r>& forces, vector<Vector3r>& positions, Real atOnce)
 {
-	if (iter == lastIter + 1) work += hexmembrane::trapezoidalWork(lastForces, lastPositions, forces, positions);
-	work += atOnce;
+	work += hexmembrane::WorkMeter{lastIter, lastForces, lastPositions}.record(iter, forces, positions) + atOnce;
 	ahead = 0;
-	lastIter = iter;
-	lastForces.swap(forces);
-	lastPositions.swap(positions);
 }
 
 void WorkMeter::book(Scene& scene, const char* name)

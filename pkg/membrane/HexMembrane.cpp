@@ -126,18 +126,7 @@ void HexMembrane::gather(const Scene& scene, const string& who, vector<Vector3r>
 {
 	requireGenerated(who);
 	x.resize(ids.size());
-	const int count = static_cast<int>(ids.size());
-	int missing = -1;
-#pragma omp parallel for schedule(static)
-	for (int i = 0; i < count; ++i) {
-		const Body::id_t id = ids[i];
-		const Body* b = id < static_cast<Body::id_t>(scene.bodies->size()) ? (*scene.bodies)[id].get() : nullptr;
-		if (b)
-			x[i] = b->state->pos;
-		else
-#pragma omp critical
-			missing = i;
-	}
+	const int missing = forEachState(*scene.bodies, ids, [&](int i, const State& state) { x[i] = state.se3.position; });
 	if (missing >= 0) body(scene, missing, who); // throws
 }
 
@@ -145,20 +134,9 @@ void HexMembrane::gather(const Scene& scene, const string& who, hexmembrane::Pad
 {
 	requireGenerated(who);
 	if (!x.fits(perRing, rings)) x = hexmembrane::PaddedRings(perRing, rings);
-	int missing = -1;
-#pragma omp parallel for schedule(static) reduction(max : missing)
-	for (int k = 0; k < rings; ++k) {
-		for (int i = 0; i < perRing; ++i) {
-			prefetchAhead(*scene.bodies, ids, k * perRing + i);
-			const Body* b = livingBody(*scene.bodies, ids[k * perRing + i]);
-			if (b)
-				x.set(k, i, b->state->se3.position);
-			else
-				missing = std::max(missing, k * perRing + i);
-		}
-		x.wrap(k);
-	}
+	const int missing = forEachState(*scene.bodies, ids, [&](int i, const State& state) { x.set(i / perRing, i % perRing, state.se3.position); });
 	if (missing >= 0) body(scene, missing, who); // throws
+	for (int k = 0; k < rings; ++k) x.wrap(k);
 }
 
 vector<std::array<int, 3>> HexMembrane::triangleList() const

@@ -55,7 +55,7 @@ void MembraneBonds::prepare()
 		throw std::runtime_error("MembraneBonds: the stored state of " + std::to_string(std::max(broken.size(), shearForces.size())) +
 		                         " bonds does not fit a membrane of " + std::to_string(bonds) + "; fix: a new MembraneBonds for another membrane");
 	kernel.reset(new hexmembrane::BondForce(membrane->stencil(), wanted));
-	state.restLength.assign(bonds, 2 * membrane->sphereRadius);
+	restLength.assign(bonds, 2 * membrane->sphereRadius);
 	built = wanted;
 	builtFor = membrane.get();
 }
@@ -93,12 +93,7 @@ void MembraneBonds::forEachBond(const VisitBond& visit) const
 void MembraneBonds::step(StepView& view)
 {
 	view.refresh(sheet());
-	// the saved attributes are the state: lent to the kernel for the step
-	state.shear.swap(shearForces);
-	state.broken.swap(broken);
-	kernel->compute(state, scene->dt);
-	state.shear.swap(shearForces);
-	state.broken.swap(broken);
+	kernel->compute(state(), scene->dt);
 	view.addForces(*membrane, {{0, membrane->rings - 1}}, kernel->force, built.ks > 0 ? &kernel->torque : nullptr, nullptr);
 }
 
@@ -117,21 +112,14 @@ void MembraneBonds::requireStepped(const char* what) const
 Real MembraneBonds::elasticEnergy()
 {
 	requireStepped("elasticEnergy");
-	state.shear.swap(shearForces);
-	state.broken.swap(broken);
-	const Real energy = kernel->energy(state);
-	state.shear.swap(shearForces);
-	state.broken.swap(broken);
-	return energy;
+	return kernel->energy(state());
 }
 
 vector<Real> MembraneBonds::normalForces()
 {
 	requireStepped("normalForces");
 	vector<Real> forces(membrane->stencil().bondCount());
-	state.broken.swap(broken);
-	for (size_t b = 0; b < forces.size(); ++b) forces[b] = kernel->normalForce(state, static_cast<int>(b));
-	state.broken.swap(broken);
+	for (size_t b = 0; b < forces.size(); ++b) forces[b] = kernel->normalForce(state(), static_cast<int>(b));
 	return forces;
 }
 
@@ -147,11 +135,7 @@ Real MembraneBonds::axialTension(Real z)
 {
 	requireStepped("axialTension");
 	hexmembrane::requireFinite("MembraneBonds.axialTension: z", z, "m");
-	state.shear.swap(shearForces);
-	state.broken.swap(broken);
-	const auto onFirst = hexmembrane::bondForces(*kernel, state);
-	state.shear.swap(shearForces);
-	state.broken.swap(broken);
+	const auto onFirst = hexmembrane::bondForces(*kernel, state());
 	return hexmembrane::axialTension(membrane->stencil(), steppedPositions(), onFirst, z);
 }
 

@@ -23,6 +23,8 @@ public:
 	Real criticalTimeStep() const;
 	vector<Real> normalForces();
 	int brokenCount() const;
+	Real normalStiffness() const { return law().kn; }
+	Real shearStiffness() const { return law().ks; }
 	Real axialTension(Real z);
 	Real radialShare(int group);
 
@@ -44,7 +46,9 @@ private:
 	std::unique_ptr<hexmembrane::BondForce> kernel;
 	hexmembrane::BondLaw built;
 	const HexMembrane* builtFor = nullptr;
-	hexmembrane::BondState state;
+	vector<Real> restLength;
+	//! What the bonds remember: the saved attributes.
+	hexmembrane::BondState state() { return {restLength, shearForces, broken}; }
 	int energyIndex = -1;
 
 	// clang-format off
@@ -60,7 +64,7 @@ private:
 		"Errors: ``ValueError`` for parameters, ``RuntimeError`` for a membrane not generated, a body erased, a force that is not finite (with body id and iteration).\n\n"
 		"Example::\n\n\tMembraneBonds(membrane=m,young=1.4e6,thickness=.3e-3,poisson=1/3.)",
 		((shared_ptr<HexMembrane>,membrane,,,"The membrane. Required."))
-		((Real,kn,NaN,,"Normal stiffness of a bond [N/m], with :yref:`ks<MembraneBonds.ks>`; or give young, thickness, poisson."))
+		((Real,kn,NaN,,"Normal stiffness of a bond [N/m], with :yref:`ks<MembraneBonds.ks>`; or give young, thickness, poisson: :yref:`normalStiffness<MembraneBonds.normalStiffness>` tells what they come to."))
 		((Real,ks,NaN,,"Shear stiffness of a bond [N/m]; NaN with kn given: 0."))
 		((Real,young,NaN,,"Young's modulus $E$ of the sheet [Pa]."))
 		((Real,thickness,NaN,,"Thickness $t$ of the sheet [m]. Only the product $Et$ enters."))
@@ -77,6 +81,8 @@ private:
 		.def("axialTension",&MembraneBonds::axialTension,(boost::python::arg("z")),"Axial force [N] that the membrane carries through the horizontal plane at the height z [m], at the last step: the axial parts of the normal and shear forces of all bonds that cross it, tension positive. A thin tube: $2\\pi r N_z$. Broken bonds count with what they still carry.")
 		.def("radialShare",&MembraneBonds::radialShare,(boost::python::arg("group")=3),"Pressure [Pa] that the membrane's own forces add to what reaches the soil at a group (0: all of groups 2 and 3), at the last step: the sum of the bonds' forces on its particles towards their ring's axis, over the same smooth inner area as :yref:`HexMembrane.transmittedPressure`. Positive presses inwards; a thin tube: $N_\\theta/r$ with $r$ the inner radius. At rest the transmitted pressure is the applied one plus this.")
 		.def("criticalTimeStep",&MembraneBonds::criticalTimeStep,"Critical time step [s] of the bonds alone, $2/\\omega$ with $\\omega^2=\\max(6k_n+2k_s,\\,30k_s)/m$: exact for the free flat lattice, where the second term is all particles spinning alike, and below the tube's own. Contacts make it shorter, and so does a strain $\\epsilon$ of the bonds, which adds some $2k_n\\epsilon$ to the first term and multiplies the second by $(1+\\epsilon)^2$.")
+		.add_property("normalStiffness",&MembraneBonds::normalStiffness,"Normal stiffness of a bond [N/m], as given or from young, thickness and poisson.")
+		.add_property("shearStiffness",&MembraneBonds::shearStiffness,"Shear stiffness of a bond [N/m], likewise.")
 		.add_property("brokenCount",&MembraneBonds::brokenCount,"Number of broken bonds.")
 	);
 	// clang-format on

@@ -22,7 +22,7 @@ void perParticle(benchmark::State& state, size_t particles)
 	state.counters["particles"] = static_cast<double>(particles);
 }
 
-BondForce loaded(const HexLattice& l, const BondLaw& law, BondState& bonds)
+BondForce loaded(const HexLattice& l, const BondLaw& law, reference::Memory& bonds)
 {
 	BondForce kernel(l, law);
 	for (int k = 0; k < l.rings; ++k) {
@@ -54,10 +54,10 @@ BondLaw law(double ks)
 void bondsCentral(benchmark::State& state)
 {
 	const HexLattice l = membrane(state);
-	BondState bonds;
+	reference::Memory bonds;
 	BondForce kernel = loaded(l, law(0), bonds);
 	for (auto _ : state) {
-		kernel.compute(bonds, 1e-6);
+		kernel.compute(bonds.state(), 1e-6);
 		benchmark::DoNotOptimize(kernel.force.row(0, 0));
 	}
 	perParticle(state, l.particles());
@@ -66,10 +66,10 @@ void bondsCentral(benchmark::State& state)
 void bondsWithShear(benchmark::State& state)
 {
 	const HexLattice l = membrane(state);
-	BondState bonds;
+	reference::Memory bonds;
 	BondForce kernel = loaded(l, law(346), bonds);
 	for (auto _ : state) {
-		kernel.compute(bonds, 1e-9);
+		kernel.compute(bonds.state(), 1e-9);
 		benchmark::DoNotOptimize(kernel.force.row(0, 0));
 	}
 	perParticle(state, l.particles());
@@ -78,7 +78,7 @@ void bondsWithShear(benchmark::State& state)
 void bondsReference(benchmark::State& state)
 {
 	const HexLattice l = membrane(state);
-	BondState bonds;
+	reference::Memory bonds;
 	reference::Particles p;
 	p.position = l.positions;
 	bonds.restLength.assign(l.bondCount(), 2 * l.sphereRadius);

@@ -39,6 +39,22 @@ def test_forcesAreThoseOfSprings(O):
 	assert np.abs(forcesOn(m.ids) - expected).max() < 1e-12 * np.abs(expected).max()
 
 
+def test_springsAreReadHoweverTheyAreGiven():
+	from yade.wrapper import MembraneBonds
+
+	sheet = MembraneBonds(young=1.4e6, thickness=0.3e-3, poisson=0.2)
+	kn, ks = sheet.normalStiffness, sheet.shearStiffness
+	assert 2 * math.sqrt(3) * kn * (kn + ks) / (3 * kn + ks) == pytest.approx(1.4e6 * 0.3e-3, rel=1e-12)
+	assert (kn - ks) / (3 * kn + ks) == pytest.approx(0.2, rel=1e-12)
+	assert math.isnan(sheet.kn) and math.isnan(sheet.ks)  # as given
+	springs = MembraneBonds(kn=500.0)
+	assert (springs.normalStiffness, springs.shearStiffness) == (500.0, 0.0)
+	springs.ks = 20.0
+	assert springs.shearStiffness == 20.0
+	with pytest.raises(ValueError, match="MembraneBonds.kn = nan: not given"):
+		MembraneBonds().normalStiffness
+
+
 def test_generatedMembraneStaysAtRest(O):
 	m = makeMembrane()
 	O.engines = bondEngines(m)

@@ -148,6 +148,54 @@ def test_newTargetStartsFromThePresentVelocity(O):
 	assert abs(old - 0.03) < 1e-15
 
 
+def ramped(changes, ramp, time):
+	"""Sum of the cosine ramps of (moment, size) of all changes, from its definition."""
+	passed = ((min(max((time - moment) / ramp, 0), 1), size) for moment, size in changes)
+	return sum(0.5 * size * (1 - math.cos(math.pi * share)) for share, size in passed)
+
+
+def test_velocitySetEveryStepIsFollowed(O):
+	"""By a script, up and down again: half a ramp behind, as the sum of the ramps of its changes; every step by itself, and every tenth."""
+	ramp, speed = 200, 0.05
+	for every in (1, 10):
+		O.reset()
+		material(O)
+		top = topPlaten(O, 0.1)
+		drive = driven(O, platen=top, velocity=0.0)
+		O.dt = 1e-5
+		O.step()
+		drive.rampTime = ramp * O.dt
+		changes, wanted = [], [speed * (1 - math.cos(math.pi * step / 1000)) for step in range(2001)]
+		for step in range(1, 2500):
+			if step % every == 0 and step <= 2000:
+				changes.append((step, wanted[step] - drive.velocity))
+				drive.velocity = wanted[step]
+			O.step()
+			velocity = -O.bodies[top].state.vel[2]
+			assert abs(velocity - ramped(changes, ramp, step + 0.5)) < 1e-12 * speed
+			if 200 < step <= 2000:
+				assert abs(velocity - wanted[step - ramp // 2]) < 0.03 * speed
+		assert velocity == wanted[2000]
+
+
+def test_stressSetEveryStepIsFollowed(O):
+	"""A stress that rises in every step: it is carried, half a ramp behind, and the servo settles when the rise has ended."""
+	kn, ramp, area = 1e5, 1000, 1e-5
+	bottom, top = stack(O, 3, 1, kn)
+	drive = driven(O, kn, platen=top, mode="stress", stress=1e4, area=area, timeLimit=8000 * O.dt)
+	O.run(6000, True)
+	assert drive.settled
+	drive.rampTime = ramp * O.dt
+	for step in range(10000):
+		drive.stress = 1e4 * (1 + step / 5000)
+		O.step()
+		if step > 2000:
+			assert abs(drive.force / area / (1e4 * (1 + (step - ramp / 2) / 5000)) - 1) < 0.02
+			assert not drive.settled
+	O.run(2000, True)
+	assert drive.settled and abs(drive.force / area / drive.stress - 1) < 1e-3
+
+
 @pytest.mark.parametrize("kn", (1e3, 1e5, 1e7))
 @pytest.mark.parametrize("layers, side, ramp", ((3, 1, 0), (3, 1, 400), (8, 3, 0), (8, 3, 2000)))
 def test_stressServoReachesItsTargetWithoutOvershoot(O, kn, layers, side, ramp):
@@ -197,6 +245,22 @@ def test_approachFollowsStressAndDensity(O):
 	O.dt = 1e-6
 	O.step()
 	assert O.bodies[ball].dynamic
+	assert abs(O.bodies[top].state.vel[2] + 1e-3 * math.sqrt(1e5 / DENSITY)) < 1e-12
+
+
+@pytest.mark.parametrize("scaling", (1e-3, 1e4))
+def test_approachTakesTheGrainsDensityBesideAScaledMembrane(O, scaling):
+	"""Many small spheres of another density, less than half of the volume."""
+	material(O)
+	for i in range(9):
+		sphere(O, (0.3 * i, 0, -1), 0.1)
+		for j in range(7):
+			light = sphere(O, (0.3 * i, 0.1 * j, -2), 0.05)
+			O.bodies[light].state.mass *= scaling
+	top = topPlaten(O, 0.1)
+	driven(O, platen=top, mode="stress", stress=1e5)
+	O.dt = 1e-6
+	O.step()
 	assert abs(O.bodies[top].state.vel[2] + 1e-3 * math.sqrt(1e5 / DENSITY)) < 1e-12
 
 

@@ -38,13 +38,13 @@ struct Pair {
 	HexLattice tube = support::smallTube();
 	BondLaw rule;
 	BondForce fast;
-	BondState fastState, slowState;
+	reference::Memory fastState, slowState;
 	reference::Particles p;
 
 	explicit Pair(const BondLaw& l) : rule(l), fast(tube, l)
 	{
 		load(fast.position, tube, tube.positions);
-		fast.setRestLengths(fastState);
+		fastState.restLength = fast.lengths();
 		slowState = fastState;
 		if (rule.ks > 0) slowState.shear.assign(tube.bonds.size(), Vec3::Zero());
 		p.position = tube.positions;
@@ -59,7 +59,7 @@ struct Pair {
 			load(fast.velocity, tube, p.velocity);
 			load(fast.spin, tube, p.spin);
 		}
-		fast.compute(fastState, dt);
+		fast.compute(fastState.state(), dt);
 		reference::bondForces(tube.bonds, rule, slowState, p, dt);
 	}
 };
@@ -129,7 +129,7 @@ TEST(BondForce, forceIsMinusGradientOfEnergy)
 				auto x = pair.p.position;
 				x[v][a] += side ? h : -h;
 				load(pair.fast.position, pair.tube, x);
-				e[side] = pair.fast.energy(pair.fastState);
+				e[side] = pair.fast.energy(pair.fastState.state());
 			}
 			worst = std::max(worst, std::abs(-(e[1] - e[0]) / (2 * h) - force[v][a]));
 			size = std::max(size, force[v].norm());

@@ -18,4 +18,22 @@ inline double trapezoidalWork(const std::vector<Vec3>& force0, const std::vector
 	return work;
 }
 
+/// Meter of the work of point forces over the steps of a run. What it remembers of the last step is the caller's, who saves it.
+struct WorkMeter {
+	long& lastStep;
+	std::vector<Vec3>& lastForce;
+	std::vector<Vec3>& lastPosition;
+
+	/// Work since the step before; `force` and `position` are taken over for the next one (they come back with contents of no use).
+	/// \return 0 where there is no step before: the first one, after a gap (the forces of long ago did not act meanwhile), or with other points
+	double record(long step, std::vector<Vec3>& force, std::vector<Vec3>& position)
+	{
+		const double work = step == lastStep + 1 ? trapezoidalWork(lastForce, lastPosition, force, position) : 0;
+		lastStep = step;
+		lastForce.swap(force);
+		lastPosition.swap(position);
+		return work;
+	}
+};
+
 } // namespace hexmembrane

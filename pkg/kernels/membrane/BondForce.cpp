@@ -34,16 +34,16 @@ BondForce::BondForce(const HexStencil& s, const BondLaw& l) : position(s.perRing
 	}
 }
 
-void BondForce::setRestLengths(BondState& state) const
+std::vector<double> BondForce::lengths() const
 {
-	state.restLength.resize(stencil.bondCount());
+	std::vector<double> all(stencil.bondCount());
 	for (int family = 0; family < 3; ++family)
 		for (int k = 0; k < stencil.familyRows(family); ++k) {
 			const auto far = HexStencil::farEnd(family, k);
 			for (int i = 0; i < stencil.perRing; ++i)
-				state.restLength[stencil.familyStart(family) + k * stencil.perRing + i] =
-				        (position.get(k + far[0], i + far[1]) - position.get(k, i)).norm();
+				all[stencil.familyStart(family) + k * stencil.perRing + i] = (position.get(k + far[0], i + far[1]) - position.get(k, i)).norm();
 		}
+	return all;
 }
 
 namespace {
@@ -96,7 +96,7 @@ void BondForce::centralRow(const BondState& state, int family, int k)
 	f.wrap(k);
 }
 
-void BondForce::generalRow(BondState& state, int family, int k, double dt)
+void BondForce::generalRow(BondState state, int family, int k, double dt)
 {
 	const auto far = HexStencil::farEnd(family, k);
 	for (int i = 0; i < stencil.perRing; ++i) {
@@ -162,7 +162,7 @@ void BondForce::gather(const std::vector<PaddedRings>& bond, double sign, Padded
 		}
 }
 
-void BondForce::compute(BondState& state, double dt)
+void BondForce::compute(BondState state, double dt)
 {
 	const bool central = law.central();
 	if (!central) {

@@ -27,11 +27,11 @@ struct BondLaw {
 	void check() const;
 };
 
-/// What a bond remembers. Sizes: HexStencil::bondCount(), or 0 where the law does not need it.
+/// What bonds remember, where the caller keeps it. Sizes: HexStencil::bondCount(), or 0 where the law does not need it; compute() makes them fit.
 struct BondState {
-	std::vector<double> restLength; ///< L0 (m)
-	std::vector<Vec3> shear;        ///< shear force on the bond's first particle (N)
-	std::vector<int> broken;        ///< 0 or 1
+	const std::vector<double>& restLength; ///< L0 (m)
+	std::vector<Vec3>& shear;              ///< shear force on the bond's first particle (N)
+	std::vector<int>& broken;              ///< 0 or 1
 };
 
 /// All bonds of a hexagonal tube in one sweep over padded rows. Forces of the bonds are stored first and then gathered particle by particle in a fixed
@@ -43,11 +43,11 @@ public:
 	/// \throws std::invalid_argument for a law out of range
 	BondForce(const HexStencil& stencil, const BondLaw& law);
 
-	/// Makes the present positions the stress-free ones.
-	void setRestLengths(BondState& state) const;
+	/// Lengths of the bonds at the present positions, for those that are to be stress-free (m).
+	std::vector<double> lengths() const;
 
 	/// Forces (and torques when ks > 0) at the present positions. With ks > 0 also reads velocity and spin and advances the shear by dt.
-	void compute(BondState& state, double dt);
+	void compute(BondState state, double dt);
 
 	/// Elastic energy of all bonds (J), by position and state.
 	double energy(const BondState& state) const;
@@ -62,7 +62,7 @@ public:
 
 private:
 	void centralRow(const BondState& state, int family, int k);
-	void generalRow(BondState& state, int family, int k, double dt);
+	void generalRow(BondState state, int family, int k, double dt);
 	void gather(const std::vector<PaddedRings>& perBond, double signOfFarEnd, PaddedRings& perParticle) const;
 
 	HexStencil stencil;

@@ -14,8 +14,17 @@ struct Particles {
 	std::vector<Vec3> position, velocity, spin, force, torque;
 };
 
+/// What bonds remember, in one place.
+struct Memory {
+	std::vector<double> restLength;
+	std::vector<Vec3> shear;
+	std::vector<int> broken;
+
+	BondState state() { return {restLength, shear, broken}; }
+};
+
 /// The bond law of BondForce.hpp, one bond after the other over an index list, with nothing clever: the oracle of the fast kernel.
-inline void bondForces(const std::vector<std::array<int, 2>>& bonds, const BondLaw& law, BondState& state, Particles& p, double dt)
+inline void bondForces(const std::vector<std::array<int, 2>>& bonds, const BondLaw& law, Memory& state, Particles& p, double dt)
 {
 	p.force.assign(p.position.size(), Vec3::Zero());
 	p.torque.assign(p.position.size(), Vec3::Zero());
