@@ -33,7 +33,7 @@ struct Reference {
 	GrainLaw law;
 	double size = 1, side = 0;
 	std::vector<Vec3> v, w;
-	std::map<std::pair<std::size_t, std::size_t>, Vec3> shear, moment;
+	std::map<std::pair<std::size_t, std::size_t>, Vec3> shear, moment, normals;
 
 	void step(double growth)
 	{
@@ -48,13 +48,22 @@ struct Reference {
 				if (dist >= ri + rj) {
 					shear.erase({i, j});
 					moment.erase({i, j});
+					normals.erase({i, j});
 					continue;
 				}
 				const Vec3 n = (x[j] - x[i]).normalized(), atI = n * dist * ri / (ri + rj), atJ = -n * dist * rj / (ri + rj);
 				const Vec3 slip = v[j] + w[j].cross(atJ) - v[i] - w[i].cross(atI);
+				// loads turn with the contact: rotation of its normal, then the mean spin about it
+				const bool old = normals.count({i, j}) > 0;
+				const Vec3 n0 = old ? normals[{i, j}] : n;
+				normals[{i, j}] = n;
+				const auto turn = [&](Vec3& load) {
+					load += n0.cross(n).cross(load);
+					load += (0.5 * dt * n0.dot(w[i] + w[j]) * n0).cross(load);
+				};
 				Vec3& s = shear.emplace(std::make_pair(i, j), Vec3::Zero()).first->second;
-				s += kn / law.stiffnessRatio * dt * slip;
-				s -= n * n.dot(s);
+				turn(s);
+				s += kn / law.stiffnessRatio * dt * (slip - n * n.dot(slip));
 				const double normal = kn * (ri + rj - dist);
 				if (s.norm() > law.friction * normal) s = s.normalized() * law.friction * normal;
 				f[i] += s - normal * n;
@@ -63,8 +72,8 @@ struct Reference {
 				t[j] += atJ.cross(-s);
 				const double lever = 1 / (1 / ri + 1 / rj), most = law.rollingFriction * lever * normal;
 				Vec3& m = moment.emplace(std::make_pair(i, j), Vec3::Zero()).first->second;
-				m += kn / law.stiffnessRatio * lever * lever * dt * (w[j] - w[i]);
-				m -= n * n.dot(m);
+				turn(m);
+				m += kn / law.stiffnessRatio * lever * lever * dt * (w[j] - w[i] - n * n.dot(w[j] - w[i]));
 				if (m.norm() > most) m = m.normalized() * most;
 				t[i] += m;
 				t[j] -= m;
@@ -78,18 +87,15 @@ struct Reference {
 		}
 		for (std::size_t i = 0; i < x.size(); ++i) {
 			const double mass = law.modulus * base[i];
+			// damping by the velocity in the middle of the step
+			const auto step = [&](double& velocity, double acceleration) {
+				const double power = acceleration * (velocity + 0.5 * dt * acceleration);
+				velocity += dt * acceleration * (power == 0 ? 1 : 1 - std::copysign(law.damping, power));
+			};
 			for (int a = 0; a < 3; ++a) {
-				if (f[i][a] * v[i][a] != 0)
-					f[i][a] *= 1 - std::copysign(law.damping, f[i][a] * v[i][a]);
-				else
-					f[i][a] *= 1 + law.damping;
-				if (t[i][a] * w[i][a] != 0)
-					t[i][a] *= 1 - std::copysign(law.damping, t[i][a] * w[i][a]);
-				else
-					t[i][a] *= 1 + law.damping;
+				step(v[i][a], f[i][a] / mass);
+				step(w[i][a], t[i][a] / (0.4 * mass * base[i] * base[i]));
 			}
-			v[i] += dt * f[i] / mass;
-			w[i] += dt * t[i] / (0.4 * mass * base[i] * base[i]);
 			x[i] += dt * v[i];
 		}
 	}

@@ -1,22 +1,13 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "kernels/compact/GrainMotion.hpp"
 
-#include "kernels/base/Lanes.hpp"
+#include "kernels/base/LocalDamping.hpp"
 
 #include <algorithm>
 
 namespace hexmembrane {
 
 namespace {
-
-/// Components of velocity or spin after the step, from their values before, the loads on them, and 1/mass or 1/inertia.
-template <typename Components>
-HEXMEMBRANE_INLINE Components advanced(Components v, Components load, Components inverse, double dt, double damping)
-{
-	const Components a = load * inverse, power = a * (v + 0.5 * dt * a), none = power - power;
-	const Components lessened = (1 - damping) * a, raised = (1 + damping) * a;
-	return v + dt * (power > none ? lessened : (power < none ? raised : a));
-}
 
 inline double absoluteDot(const Vec3& a, const Vec3& b) { return a.cwiseAbs().dot(b.cwiseAbs()); }
 
@@ -40,8 +31,8 @@ HEXMEMBRANE_WIDEST void moveWidest(GrainMotion& s)
 		if (!s.fixed[i]) {
 			const double* const load = s.loads[i].force.data();
 			const HalfLanes inverse = 1 / HalfLanes{s.mass[i], s.inertia[i]};
-			low = advanced(low, load4(load), __builtin_shufflevector(inverse, inverse, 0, 0, 0, 1), s.dt, s.damping);
-			high = advanced(high, load2(load + 4), __builtin_shufflevector(inverse, inverse, 1, 1), s.dt, s.damping);
+			low = dampedStep(low, load4(load), __builtin_shufflevector(inverse, inverse, 0, 0, 0, 1), s.dt, s.damping);
+			high = dampedStep(high, load2(load + 4), __builtin_shufflevector(inverse, inverse, 1, 1), s.dt, s.damping);
 			store4(motion, low);
 			store2(motion + 4, high);
 		}

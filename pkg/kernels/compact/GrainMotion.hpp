@@ -24,8 +24,7 @@ struct GrainMotion {
 	double dampedWork; ///< taken by the damping (J), if `energies`
 };
 
-/// Leapfrog with YADE's second-order form of Cundall's damping, which is judged by the velocity in the middle of the step to come:
-/// a = F/m (1 - damping sign(F (v + dt F/(2 m)))), v += dt a, x += dt v, a component at a time; spins the same with torques and inertia.
+/// Leapfrog with local damping, see LocalDamping.hpp: v += dt a, x += dt v, a component at a time; spins the same with torques and inertia.
 void moveGrains(GrainMotion& step);
 
 } // namespace hexmembrane

@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "kernels/compact/MembraneMotion.hpp"
 
-#include "kernels/base/Lanes.hpp"
+#include "kernels/base/LocalDamping.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -246,8 +246,7 @@ int MembraneMotion::moveSpins(double dt, double damping, double inertia, const s
 			const Vec3 before = spin.get(k, i);
 			for (int a = 0; a < 3; ++a) {
 				if (!isFree(k)) torque[a] *= freeRows[freeRowsOf[k]][3 + a][i];
-				const double acceleration = torque[a] / inertia, power = acceleration * (before[a] + 0.5 * dt * acceleration);
-				after[a] = before[a] + dt * acceleration * (1 - damping * ((power > 0) - (power < 0)));
+				after[a] = dampedStep(before[a], torque[a], 1 / inertia, dt, damping);
 			}
 			if (energies) {
 				kinetic += 0.5 * inertia * before.squaredNorm();

@@ -1,6 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "kernels/packing/GrainAssembly.hpp"
 
+#include "kernels/base/LocalDamping.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,23 +12,6 @@ namespace {
 
 /// Reach of the neighbour list beyond contact, in largest radii.
 constexpr double skinRatio = 0.1;
-
-/// Cundall's local damping, component by component.
-void damp(Vec3& force, const Vec3& velocity, double share)
-{
-	for (int axis = 0; axis < 3; ++axis) force[axis] *= force[axis] * velocity[axis] > 0 ? 1 - share : 1 + share;
-}
-
-/// Adds to a spring's load, keeps it in the contact plane and below its limit. \return whether it was above
-bool load(Vec3& spring, const Vec3& increment, const Vec3& normal, double limit)
-{
-	spring += increment;
-	spring -= spring.dot(normal) * normal;
-	const double square = spring.squaredNorm();
-	if (!(square > limit * limit)) return false;
-	spring *= limit / std::sqrt(square);
-	return true;
-}
 
 } // namespace
 
@@ -48,18 +33,15 @@ void GrainAssembly::refreshPairs()
 	}
 	NearPairs found = findNearPairs(x, r, skin, Vec3(-cylinderRadius, -cylinderRadius, 0), Vec3(cylinderRadius, cylinderRadius, cylinderHeight));
 	// both lists are sorted: springs move over by a merge
-	std::vector<Vec3> moved(found.other.size(), Vec3::Zero()), movedMoment = moved;
+	std::vector<ContactMemory<double>> moved(found.other.size(), noMemory());
 	for (std::size_t i = 0; i + 1 < pairs.start.size(); ++i) {
 		int old = pairs.start[i];
 		for (int k = found.start[i]; k < found.start[i + 1]; ++k) {
 			while (old < pairs.start[i + 1] && pairs.other[old] < found.other[k]) ++old;
-			if (old == pairs.start[i + 1] || pairs.other[old] != found.other[k]) continue;
-			moved[k] = shear[old];
-			movedMoment[k] = moment[old];
+			if (old < pairs.start[i + 1] && pairs.other[old] == found.other[k]) moved[k] = memories[old];
 		}
 	}
-	shear.swap(moved);
-	moment.swap(movedMoment);
+	memories.swap(moved);
 	pairs = std::move(found);
 	listed = x;
 	listedSize = size;
@@ -86,6 +68,12 @@ void GrainAssembly::addWalls(std::size_t i)
 	}
 }
 
+LinearLaw<double> GrainAssembly::lawOf(double r1, double r2) const
+{
+	const double lever = rollingRadius(r1, r2), kn = 2 * law.modulus * lever, ks = kn / law.stiffnessRatio;
+	return {kn, ks, law.friction, law.rollingFriction > 0 ? ks * lever * lever : 0, law.rollingFriction * lever};
+}
+
 void GrainAssembly::computeForces()
 {
 	refreshPairs();
@@ -101,31 +89,22 @@ void GrainAssembly::computeForces()
 			const double reach = r[i] + r[j];
 			const double dist2 = d.squaredNorm();
 			if (dist2 >= reach * reach) {
-				shear[k] = moment[k] = Vec3::Zero();
+				memories[k] = noMemory();
 				continue;
 			}
-			const double dist = std::sqrt(dist2);
-			const Vec3 n = d / dist;
-			const double kn = 2 * law.modulus * r[i] * r[j] / reach;
-			const double normal = kn * (reach - dist);
-			const double armI = dist * r[i] / reach, armJ = dist - armI;
-			// velocity of j's side of the contact against i's
-			const Vec3 slip = v[j] - v[i] - (armI * w[i] + armJ * w[j]).cross(n);
-			const double ks = kn / law.stiffnessRatio;
-			Vec3& s = shear[k];
-			if (load(s, (ks * timeStep) * slip, n, law.friction * normal)) ++slidingCount;
-			if (law.rollingFriction > 0) {
-				const double lever = r[i] * r[j] / reach;
-				load(moment[k], (ks * lever * lever * timeStep) * (w[j] - w[i]), n, law.rollingFriction * lever * normal);
-				t[i] += moment[k];
-				t[j] -= moment[k];
-			}
-			const Vec3 onI = s - normal * n;
-			f[i] += onI;
-			f[j] -= onI;
-			const Vec3 turn = n.cross(s);
-			t[i] += armI * turn;
-			t[j] += armJ * turn;
+			const double dist = std::sqrt(dist2), overlap = reach - dist, armI = dist * r[i] / reach, armJ = dist - armI;
+			const Vec3 n = d / dist, velocity = v[j] - v[i] - (armI * w[i] + armJ * w[j]).cross(n);
+			ContactMemory<double>& memory = memories[k];
+			carry<double>(memory, n, w[i] + w[j], timeStep);
+			const Vec3 slide = timeStep * acrossNormal(velocity, n), bend = timeStep * acrossNormal(w[j] - w[i], n);
+			const UnbondedStep<double> step = advanceUnbonded<double>(lawOf(r[i], r[j]), overlap, slide, bend, memory.shear, memory.moment);
+			if (step.slip > 0) ++slidingCount;
+			const double normal = step.normal;
+			const Vec3 onJ = normal * n + memory.shear, turn = n.cross(memory.shear);
+			f[i] -= onJ;
+			f[j] += onJ;
+			t[i] -= armI * turn + memory.moment;
+			t[j] -= armJ * turn - memory.moment;
 			sumForce += normal;
 			++contactCount;
 			++touching[i];
@@ -141,12 +120,11 @@ void GrainAssembly::step(double growth)
 	for (std::size_t i = 0; i < r.size(); ++i) r[i] = base[i] * size;
 	computeForces();
 	for (std::size_t i = 0; i < x.size(); ++i) {
-		const double mass = law.modulus * base[i];
-		Vec3 force = f[i], torque = t[i];
-		damp(force, v[i], law.damping);
-		damp(torque, w[i], law.damping);
-		v[i] += (timeStep / mass) * force;
-		w[i] += (timeStep / (0.4 * mass * base[i] * base[i])) * torque;
+		const double perMass = 1 / (law.modulus * base[i]), perInertia = perMass / (0.4 * base[i] * base[i]);
+		for (int a = 0; a < 3; ++a) {
+			v[i][a] = dampedStep(v[i][a], f[i][a], perMass, timeStep, law.damping);
+			w[i][a] = dampedStep(w[i][a], t[i][a], perInertia, timeStep, law.damping);
+		}
 		x[i] += timeStep * v[i];
 	}
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/base/CellGrid.hpp"
+#include "kernels/contact/ContactLaw.hpp"
 #include "kernels/base/Vec3.hpp"
 
 #include <vector>
@@ -21,8 +22,7 @@ struct GrainLaw {
 /// growing all of them by one common factor. Quasi-static only: masses are modulus times radius (in a unit of time of 1), so that one time step suits
 /// all sizes; nothing here has a meaning in seconds. Axis z, lower end on z = 0. One thread, sums in a fixed order: same input, same bits.
 ///
-/// Shear springs: the tangential displacement of the contact point is added up, turned with the normal (what leaves the tangent plane is dropped) and
-/// limited by friction. Rolling springs, where there is rolling friction, the same with the difference of the spins.
+/// Contacts of grains follow the linear law with rolling resistance, ContactLaw.hpp, with a stiffness rule of their own (GrainLaw).
 class GrainAssembly {
 public:
 	/// Input is the caller's to check. Radii in m, at factor 1.
@@ -56,6 +56,7 @@ public:
 
 private:
 	void refreshPairs();
+	LinearLaw<double> lawOf(double r1, double r2) const;
 	void addWalls(std::size_t i);
 	void computeForces();
 
@@ -66,8 +67,7 @@ private:
 	GrainLaw law;
 
 	NearPairs pairs;
-	std::vector<Vec3> shear;  // force of each pair's shear spring on its first grain
-	std::vector<Vec3> moment; // of its rolling spring
+	std::vector<ContactMemory<double>> memories; // of the pairs
 	std::vector<Vec3> listed;
 	double listedSize = 0; // 0: no list yet
 
