@@ -3,7 +3,8 @@
 
 import numpy as np
 import pytest
-from compactScene import build, forces, run, state
+from specimenScene import build
+from tiers import forces, run, state
 
 SCENES = {
 	"membrane": {},

@@ -3,9 +3,11 @@
 
 import numpy as np
 import pytest
-from compactScene import build, forces, referenceEngines, run, state
+import yade
+from specimenScene import build
+from tiers import engines, forces, loop, run, state
 
-GRAINS = 150  # of compactScene.build
+GRAINS = 150  # of specimenScene.build
 MOVING = dict(spin=0.05, velocity=0.05)
 
 
@@ -56,16 +58,12 @@ def test_contactsMoveBetweenTiers(O):
 	O.reset()
 	made = build("reference", **MOVING)
 	run(50)
-	inner = list(made.values())
-	import yade
-
-	loop = yade.CompactLoop(engines=inner, damping=0.2, substeps=10)
-	O.engines = [yade.ForceResetter(), loop]
+	O.engines = engines("compact", made.values(), damping=0.2, substeps=10)
 	run(50)
 	assert O.interactions.countReal() == 0
-	loop.exportContacts()
-	assert O.interactions.countReal() == loop.contactCount()
-	O.engines = referenceEngines(inner, 0.2)
+	loop().exportContacts()
+	assert O.interactions.countReal() == loop().contactCount()
+	O.engines = engines("reference", made.values(), damping=0.2)
 	run(50)
 	moved = np.abs(whole[:, 3:6]).max()
 	assert np.abs(state() - whole)[:, 3:6].max() < 1e-7 * moved
@@ -96,10 +94,7 @@ def test_contactBondsMoveBetweenTiersAndBreakAlike(O):
 	made = build("reference", **MOVING)
 	run(20)
 	bondAll()
-	import yade
-
-	loop = yade.CompactLoop(engines=list(made.values()), damping=0.2, substeps=10)
-	O.engines = [yade.ForceResetter(), loop]
+	O.engines = engines("compact", made.values(), damping=0.2, substeps=10)
 	run(20)
 	O.saveTmp("bonds")
 	O.reset()
@@ -107,7 +102,7 @@ def test_contactBondsMoveBetweenTiersAndBreakAlike(O):
 	run(20)
 	moved = np.abs(whole[:, 3:6]).max()
 	assert np.abs(state() - whole)[:, 3:6].max() < 1e-7 * moved
-	O.engines[1].exportContacts()
+	loop().exportContacts()
 	assert bonded() == left
 
 
@@ -116,9 +111,7 @@ def test_bondsWithASmoothMembraneAreRefused(O):
 	run(20)
 	contact = next(i for i in O.interactions if i.isReal and i.phys.spheres and max(i.id1, i.id2) >= GRAINS)
 	contact.phys.bond(1, 1)
-	import yade
-
-	O.engines = [yade.ForceResetter(), yade.CompactLoop(engines=list(made.values()), damping=0.2)]
+	O.engines = engines("compact", made.values(), damping=0.2)
 	with pytest.raises(RuntimeError, match="bonded without friction, grain and membrane; fix: bonds among grains only"):
 		run(1)
 	assert contact.isReal and contact.phys.bonded, "nothing is lost"
@@ -143,7 +136,7 @@ def test_exportedContactsAreThoseOfTheReference(O):
 	O.reset()
 	made = build("compact", **MOVING)
 	run(40)
-	made["loop"].exportContacts()
+	loop().exportContacts()
 	compact = contacts()
 	assert set(reference) == set(compact)
 	common = [(reference[key], compact[key]) for key in reference]
@@ -173,8 +166,6 @@ def test_scriptsMayMoveAndAddBodies(O):
 
 def test_forcesFromOutsideAct(O):
 	"""A force that an engine before it adds is held for the iteration: a free sphere falls as told."""
-	import yade
-
 	O.materials.append(yade.LinearMat(emod=1e7, kratio=3, friction=0, density=1000, label="m"))
 	a, b = (O.bodies.append(yade.utils.sphere((x, 0, 0), 1e-3, material="m")) for x in (0.0, 0.1))
 	O.engines = [yade.ForceResetter(), yade.PyRunner(command="O.forces.addF(%d, (0, 0, -1e-3))" % a, iterPeriod=1, initRun=True), yade.CompactLoop(damping=0, substeps=10)]
@@ -196,8 +187,6 @@ def test_aRunawaySphereStopsTheRun(O):
 
 
 def test_orientationsTurn(O):
-	import yade
-
 	O.materials.append(yade.LinearMat(emod=1e7, kratio=3, friction=0, density=1000, label="m"))
 	b = O.bodies.append(yade.utils.sphere((0, 0, 0), 1e-3, material="m"))
 	O.bodies[b].state.angVel = (0, 0, 2.0)
@@ -209,10 +198,8 @@ def test_orientationsTurn(O):
 
 
 def wrong(O, change):
-	import yade
-
-	made = build("compact")
-	change(made, yade)
+	build("compact")
+	change()
 	with pytest.raises((RuntimeError, ValueError)) as caught:
 		O.step()
 		O.step()
@@ -223,20 +210,20 @@ def wrong(O, change):
 @pytest.mark.parametrize(
 	"change, says",
 	[
-		(lambda made, yade: setattr(made["loop"], "damping", 1.5), "CompactLoop.damping = 1.5"),
-		(lambda made, yade: setattr(made["loop"], "substeps", 0), "CompactLoop.substeps = 0"),
-		(lambda made, yade: setattr(made["loop"], "skin", -1.0), "CompactLoop.skin = -1"),
-		(lambda made, yade: setattr(made["loop"], "engines", made["loop"].engines + [yade.NewtonIntegrator()]), "NewtonIntegrator"),
-		(lambda made, yade: setattr(made["loop"], "engines", made["loop"].engines * 2), "has two MembraneBonds"),
-		(lambda made, yade: setattr(made["loop"], "engines", made["loop"].engines[1:]), "without MembraneBonds"),
-		(lambda made, yade: setattr(yade.O.bodies[0], "mat", yade.FrictMat()), "no LinearMat"),
-		(lambda made, yade: setattr(yade.O.bodies[0], "shape", yade.Box(extents=(1, 1, 1))), "is a Box"),
-		(lambda made, yade: setattr(yade.O.bodies[0].state, "blockedDOFs", "x"), "degrees of freedom"),
-		(lambda made, yade: setattr(yade.O.bodies[0].state, "mass", 0.0), "mass = 0"),
-		(lambda made, yade: setattr(yade.O.bodies[0], "mask", 4), "no bit in common"),
-		(lambda made, yade: setattr(yade.O, "engines", [made["loop"]]), "ForceResetter"),
-		(lambda made, yade: yade.O.bodies.clump([0, 1]), "clump"),
-		(lambda made, yade: setattr(yade.O, "periodic", True), "periodic"),
+		(lambda: setattr(loop(), "damping", 1.5), "CompactLoop.damping = 1.5"),
+		(lambda: setattr(loop(), "substeps", 0), "CompactLoop.substeps = 0"),
+		(lambda: setattr(loop(), "skin", -1.0), "CompactLoop.skin = -1"),
+		(lambda: setattr(loop(), "engines", loop().engines + [yade.NewtonIntegrator()]), "NewtonIntegrator"),
+		(lambda: setattr(loop(), "engines", loop().engines * 2), "has two MembraneBonds"),
+		(lambda: setattr(loop(), "engines", loop().engines[1:]), "without MembraneBonds"),
+		(lambda: setattr(yade.O.bodies[0], "mat", yade.FrictMat()), "no LinearMat"),
+		(lambda: setattr(yade.O.bodies[0], "shape", yade.Box(extents=(1, 1, 1))), "is a Box"),
+		(lambda: setattr(yade.O.bodies[0].state, "blockedDOFs", "x"), "degrees of freedom"),
+		(lambda: setattr(yade.O.bodies[0].state, "mass", 0.0), "mass = 0"),
+		(lambda: setattr(yade.O.bodies[0], "mask", 4), "no bit in common"),
+		(lambda: setattr(yade.O, "engines", [loop()]), "ForceResetter"),
+		(lambda: yade.O.bodies.clump([0, 1]), "clump"),
+		(lambda: setattr(yade.O, "periodic", True), "periodic"),
 	],
 )
 def test_whatItDoesNotKnowIsRefused(O, change, says):
@@ -270,15 +257,15 @@ def test_criticalStepIsHonest(O, options):
 	O.dt = 2e-7
 	run(20)
 	for _ in range(20):  # to rest; contacts form meanwhile
-		O.dt = 0.3 * made["loop"].criticalTimeStep()
+		O.dt = 0.3 * loop().criticalTimeStep()
 		run(300)
-	made["loop"].damping = damping
-	O.dt = 0.8 * made["loop"].criticalTimeStep()
+	loop().damping = damping
+	O.dt = 0.8 * loop().criticalTimeStep()
 	run(200)
 	before = fastest()
 	run(3000)
 	assert fastest() < 5 * before + 0.01  # an unstable mode would have grown by many orders
-	O.dt = 2 * made["loop"].criticalTimeStep()
+	O.dt = 2 * loop().criticalTimeStep()
 	with pytest.raises(RuntimeError, match="half a skin"):
 		for _ in range(300):
 			O.step()
