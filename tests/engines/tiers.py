@@ -15,6 +15,7 @@ tier and says why.
 """
 
 import numpy as np
+import pytest
 import yade
 from yade import O
 
@@ -82,8 +83,8 @@ def run(steps):
 
 
 def writeContacts():
-	"""Make O.interactions hold the contacts of the last step; the reference tier's do anyway."""
-	if loop():
+	"""Make O.interactions hold the contacts of the last step; the reference tier's do anyway, and so do those that were not taken over yet."""
+	if loop() and loop().listsMade:
 		loop().exportContacts()
 
 
@@ -103,3 +104,9 @@ def forces(ids=None):
 	"""Forces and torques of the last step, one row a body."""
 	ids = [b.id for b in O.bodies] if ids is None else ids
 	return np.array([tuple(O.forces.f(i)) + tuple(O.forces.t(i)) for i in ids])
+
+
+def owed(request, tier, why):
+	"""Let a test fail in the compact tier, which does not do yet what it asks for; in the reference tier it must pass."""
+	if tier == "compact":
+		request.applymarker(pytest.mark.xfail(strict=False, reason="lead: " + why))
