@@ -3,9 +3,10 @@
 
 import numpy as np
 import pytest
-from membraneScene import forcesOn, makeMembrane, positions, pressOnCore, shake, slack
-from tiers import engines, find, owed, run, state
-from yade import ForceResetter, MembraneBonds, MembranePressure, NewtonIntegrator, utils
+from contactScene import sphere
+from membraneScene import KN, forcesOn, inward, makeMembrane, positions, pressOnCore, shake, slack
+from tiers import contact, engines, find, owed, run, state
+from yade import ForceResetter, MembraneBonds, MembranePressure, MembraneRadialServo, NewtonIntegrator, Vector3, utils
 
 P = 1e5
 
@@ -133,6 +134,37 @@ def test_whatArrivesIsReadFromTheLastStep(O, tier, request):
 	main = np.array(m.groups).reshape(m.rings, m.perRing)[:, 0] == 3
 	assert rings[main] == pytest.approx(P, rel=0.1)
 	assert (rings[~main] == 0).all()
+
+
+@pytest.mark.parametrize("loop", [MembranePressure, MembraneRadialServo], ids=["pressure", "servo"])
+@pytest.mark.parametrize("case", ["at rest", "sliding", "pushed by a script"])
+def test_theLoopsMeasureIsOfNormalForces(O, tier, loop, case, request):
+	"""One grain that presses on one particle from 45 degrees below: kn u cos 45 inwards, over the group's area, is all that is transmitted.
+
+	Not the shear force of a grain that slides, though a part of it acts inwards, nor what a script adds to the particle's force.
+	"""
+	if case != "at rest":
+		owed(request, tier, "the measure is of all forces")
+	m = makeMembrane(platenRows=1)
+	O.materials[0].friction = 1.0
+	group, ring = (3, m.rings // 2) if loop is MembranePressure else (2, m.oRingRows)
+	particle = m.ids[ring * m.perRing]
+	x, u = O.bodies[particle].state.pos, 1e-6
+	normal = (inward(x) - Vector3(0, 0, 1)).normalized()
+	grain = O.bodies[sphere(x + normal * (m.sphereRadius + 0.001 - u), 0.001, fixed=True)]
+	engine = loop(membrane=m, pressure=P, gain=0.1, iterPeriod=1)
+	O.engines = engines(tier, [slack(m), engine])
+	O.dt = 1e-9
+	if case == "sliding":  # shear of half the normal force in one step
+		grain.state.vel = 0.5 * u / O.dt * (inward(x) + Vector3(0, 0, 1)).normalized()
+	if case == "pushed by a script":
+		O.forces.setPermF(particle, 0.1 * inward(x))
+	O.step()
+	rows = m.groups.count(group) / m.perRing
+	area = 2 * np.pi * m.innerRadius * m.ringSpacing * rows
+	assert engine.transmitted == pytest.approx(KN * u / np.sqrt(2) / area, rel=1e-6)
+	if case == "sliding":
+		assert contact(grain.id, particle).phys.shearForce.norm() == pytest.approx(0.5 * KN * u, rel=1e-3)
 
 
 def test_closedLoopStopsAtItsLimit(O, tier):
