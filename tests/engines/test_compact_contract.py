@@ -49,6 +49,7 @@ class Scene:
 			particles = [i for i, group in zip(membrane.ids, membrane.groups) if group == 3]
 			y = np.array([O.bodies[i].state.pos for i in particles])
 			overlap = r[None] + membrane.sphereRadius - np.linalg.norm(y[:, None] - x[None], axis=2)
+			self.ids["ring"] = membrane.ids[-1]
 			self.ids["particle"] = particles[overlap.max(axis=1).argmax()]
 			assert overlap.max() > 0
 			beside = (overlap > 0).any(axis=0)
@@ -73,7 +74,7 @@ class Scene:
 
 
 class Put:
-	"""A change: the attribute `path` of a body, a material or O gets a value, or the value of a function of the old one.
+	"""A change: the attribute `path` of a body, 'material LABEL', 'engine NAME' or O gets a value, or the value of a function of the old one.
 
 	:return: what undoes it.
 	"""
@@ -83,7 +84,8 @@ class Put:
 
 	def __call__(self, scene):
 		body = scene.body(self.where) if self.where in scene.ids else None
-		owner = body or (O if self.where == "O" else O.materials[self.where.removeprefix("material ")])
+		kind, _, label = self.where.partition(" ")
+		owner = body or (O if kind == "O" else O.materials[label] if kind == "material" else scene.made[label])
 		*way, name = self.path.split(".")
 		for step in way:
 			owner = getattr(owner, step)
@@ -112,7 +114,7 @@ class Row:
 	must: Optional[str] = None  # "acts" or "refused" where the other will not do
 	first: Optional[Callable] = None  # a change of the scene before its first step
 	remake: bool = False  # write the reference tier's contacts anew
-	effect: bool = True  # whether anything must come of it; False: nothing may
+	effect: Optional[bool] = True  # whether anything must come of it; False: nothing may
 	exact: bool = True  # whether the repaired run keeps its bits: not when bodies have come and gone, which sorts the arrays anew
 	at: tuple = (0, BEFORE)  # the steps at which the change is made
 
@@ -267,6 +269,32 @@ ROWS = {
 	"the wall's mat": body("wall", "wall", "mat", other(), remake=True),
 	"the wall's mask": body("wall", "wall", "mask", 4, must="refused"),
 	"the wall's blockedDOFs": body("wall", "wall", "state.blockedDOFs", "zXYZ", must="refused"),
+	# O-rings: their motion is the engine's
+	"an O-ring particle's position": body("membrane", "ring", "state.pos", shifted(2e-6, -1e-6, 3e-6), must="acts"),
+	"an O-ring particle's blockedDOFs": body("membrane", "ring", "state.blockedDOFs", "", effect=None),
+	# the engines inside, the same objects in either tier
+	**{
+		"%s.%s" % (name, path): Row(scene, Put("engine " + name, path, value), must="acts", effect=effect)
+		for name, scene, path, value, effect in (
+			("pressure", "membrane", "pressure", scaled(2), True),
+			("pressure", "membrane", "surface", "centre", True),
+			("pressure", "smooth", "gain", 0.1, True),
+			("pressure", "membrane", "dead", True, True),
+			("servo", "membrane", "pressure", scaled(2), True),
+			("servo", "membrane", "areaRule", "cube", True),
+			("servo", "membrane", "dead", True, True),
+			("bonds", "membrane", "young", scaled(2), True),
+			("bonds", "membrane", "tensileStrength", 1e-3, True),
+			("oRings", "membrane", "mode", "fixed", True),
+			("oRings", "membrane", "dead", True, True),
+			("top", "membrane", "stress", scaled(20), True),
+			("top", "membrane", "dead", True, True),
+			("wall", "wall", "stress", scaled(0.01), True),
+			("wall", "wall", "dead", True, True),
+		)
+	},
+	"top.mode": Row("membrane", lambda scene: scene.made["top"].updateAttrs(dict(mode="velocity", velocity=0.05)), must="acts"),
+	"the integrator's damping": Row("membrane", lambda scene: setattr(loop() or O.engines[-1], "damping", 0.5), must="acts"),
 	# materials, changed in place
 	**{
 		"a material's %s" % name: Row(scene, Put("material " + material, attribute, value), must="acts", remake=True, at=(BEFORE,))
@@ -339,11 +367,14 @@ def results(scene, start):
 	"""Motion, forces and torques, and each record of an engine by its name."""
 	loads = forces()
 	found = {**motion(scene, start), "force": loads[:, :3], "torque": loads[:, 3:]}
-	for engine in (name for name in scene.made if not scene.made[name].dead):
+	for name in scene.made:
 		for record in RECORDS:
-			value = getattr(scene.made[engine], record, None)
+			try:
+				value = getattr(scene.made[name], record, None)
+			except RuntimeError:  # nothing computed yet, as the engine is dead
+				value = math.nan
 			if isinstance(value, float):
-				found[engine + "." + record] = np.nan_to_num([value])
+				found[name + "." + record] = np.nan_to_num([value])
 	return found
 
 
@@ -411,7 +442,7 @@ XFAIL = (
 	("a load whose spring is gone stays", MID, ("a material's ks, 0", "a material's rollingFriction, 0")),
 	("work of a half step by the velocity or the step after the change", BOTH, ("a particle's velocity",)),
 	("work of a half step by the velocity or the step after the change", MID, ("O.dt",)),
-	("the pressure's work leaves out the way that a script moves a particle", MID, ("a particle's position",)),
+	("works leave out the way that a script moves a particle", MID, ("a particle's position", "an O-ring particle's position")),
 	("a force from outside on a platen does not reach its PlatenDrive", BOTH, ("O.forces.setPermF of a platen",)),
 	("other engines in O.engines are not looked at", BOTH, ("NewtonIntegrator", "a second CompactLoop", "InteractionLoop", "a collider", "MembranePressure")),
 )
@@ -450,7 +481,7 @@ def test_actsAsInTheReferenceTierOrIsRefused(row, at):
 	effect = differences(reference, without)
 	if row.effect:
 		assert any(value > EFFECT * toleranceOf(name) for name, value in effect.items()), "the change makes no difference: %s" % effect
-	else:
+	elif row.effect is False:
 		assert not any(effect.values()), effect
 
 

@@ -73,7 +73,7 @@ def test_contactsMoveBetweenTiers(O):
 	assert np.abs(state() - whole)[:, 3:6].max() < 1e-7 * moved
 
 
-@pytest.mark.xfail(strict=False, reason="lead: a change of tier loses half a step's work, and back in the reference tier the way since is booked with old forces")
+@pytest.mark.xfail(strict=False, reason="lead: a change of tier loses half a step's work; back in the reference tier the way since is booked with old forces")
 def test_worksGoOnBetweenTiers(O):
 	"""reference -> compact -> reference: each engine has done the work that it does in one tier."""
 	works = []
@@ -150,7 +150,7 @@ def test_exportedContactsAreThoseOfTheReference(O):
 	run(40)
 	reference = contacts()
 	O.reset()
-	made = build("compact", **MOVING)
+	build("compact", **MOVING)
 	run(40)
 	loop().exportContacts()
 	compact = contacts()
@@ -290,7 +290,7 @@ def test_criticalStepIsHonest(O, options):
 	def fastest():
 		return np.abs(state()[:, 3:6]).max()
 
-	made = build("compact", damping=0.6, **options)
+	build("compact", damping=0.6, **options)
 	O.dt = 2e-7
 	run(20)
 	for _ in range(20):  # to rest; contacts form meanwhile

@@ -138,7 +138,7 @@ def test_pureBendingUpToThePlasticMoment(O, tier, back):
 
 def test_twistMeetsNoResistance(O, tier):
 	material()
-	a, b = pair(R1, R2, OVERLAP)
+	_, b = pair(R1, R2, OVERLAP)
 	O.engines = engines(tier)
 	O.dt = 1e-6
 	O.bodies[b].state.angVel = (0, 0, 100)

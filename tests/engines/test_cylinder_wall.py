@@ -68,7 +68,7 @@ def test_slipOnTheWall(O, tier):
 @pytest.mark.parametrize("stiffness", [1e3, 1e5, 1e7])
 def test_servoHoldsTheStressForAnyStiffness(O, tier, stiffness):
 	target = 0.002 * stiffness * 6 * r / (2 * math.pi * R * HEIGHT) / 3  # overlaps of about a thousandth
-	wall, grains = scene(tier, stiffness, stress=target, height=HEIGHT, maxVelocity=0.02)
+	wall, _ = scene(tier, stiffness, stress=target, height=HEIGHT, maxVelocity=0.02)
 	servo = find(RadialWallServo)
 	highest = 0
 	for _ in range(150):
@@ -124,7 +124,7 @@ BAD = [
 
 @pytest.mark.parametrize("changes, kind, message", BAD, ids=[b[2] + str(n) for n, b in enumerate(BAD)])
 def test_badInput(O, tier, changes, kind, message):
-	wall, grains = scene(tier)
+	wall, _ = scene(tier)
 	arguments = dict(wall=wall, stress=1e3, height=HEIGHT, maxVelocity=0.01)
 	arguments.update(changes)
 	O.engines = engines(tier, [RadialWallServo(**arguments)])

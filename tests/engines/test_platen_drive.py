@@ -107,7 +107,7 @@ def test_forceAndWorkOfALinearContact(O, tier, direction):
 def test_workIsTheForceIntegralAndEnergyCloses(O, tier):
 	"""A stack loaded, unloaded and loaded again: the recorded work is the integral of the recorded force, and equals what the grains hold and have lost."""
 	kn = 1e5
-	bottom, top = stack(O, 4, 1, kn)
+	_, top = stack(O, 4, 1, kn)
 	drive = driven(O, tier, platen=top, velocity=0.2, rampTime=1e-4)
 	O.trackEnergy = True
 	O.dt *= 0.1
@@ -129,7 +129,7 @@ def test_workIsTheForceIntegralAndEnergyCloses(O, tier):
 def test_newTargetStartsFromThePresentVelocity(O, tier):
 	"""Through changes of velocity and both changes of mode, no step of a ramp changes the velocity by more than the ramp's steepest part."""
 	kn, ramp = 1e5, 2e-3
-	bottom, top = stack(O, 3, 1, kn)
+	_, top = stack(O, 3, 1, kn)
 	drive = driven(O, tier, platen=top, velocity=0.02, rampTime=ramp, maxVelocity=0.05)
 	O.dt = 2e-6
 	area = math.pi * RADIUS**2
@@ -230,9 +230,9 @@ def test_stiffnessMayBeGiven(O, tier, request):
 
 
 def test_timeLimitStopsTheRun(O, tier):
-	bottom, top = stack(O, 2, 1, 1e5)
+	_, top = stack(O, 2, 1, 1e5)
 	O.bodies.erase(2)
-	drive = driven(O, tier, platen=top, mode="stress", stress=1e5, maxVelocity=1e-6, timeLimit=20 * O.dt)
+	driven(O, tier, platen=top, mode="stress", stress=1e5, maxVelocity=1e-6, timeLimit=20 * O.dt)
 	for _ in range(20):
 		O.step()
 	with pytest.raises(RuntimeError, match=r"PlatenDrive.timeLimit = .*: platen 3 carries 0 N of 31.4159 N .*at iteration 2\d"):
@@ -241,7 +241,7 @@ def test_timeLimitStopsTheRun(O, tier):
 
 
 def test_timeLimitIsMetByASettledServo(O, tier):
-	bottom, top = stack(O, 2, 1, 1e5)
+	_, top = stack(O, 2, 1, 1e5)
 	drive = driven(O, tier, platen=top, mode="stress", stress=1e4, area=1e-5, timeLimit=4000 * O.dt)
 	run(6000)
 	assert drive.settled
@@ -262,7 +262,7 @@ def test_savedAndLoadedInEveryPhaseIsTheSameRun(O, tier, tmp_path, at):
 				drive.mode, drive.stress = "stress", 2e4
 			O.step()
 
-	bottom, top = stack(O, 3, 1, kn)
+	_, top = stack(O, 3, 1, kn)
 	drive = driven(O, tier, platen=top, velocity=0.02, area=1e-5, rampTime=500 * O.dt)
 	go(drive, 0, at)
 	file = str(tmp_path / "half.yade.gz")
@@ -310,7 +310,7 @@ def test_refusesBeforeAnythingMoves(O, tier, change, part):
 	springs()
 	sphere((0, 0, -1), GRAIN)
 	top = topPlaten(O, 0.1)
-	drive = driven(O, tier, **{"platen": top, **GOOD, **change})
+	driven(O, tier, **{"platen": top, **GOOD, **change})
 	before = state()
 	with pytest.raises(ValueError, match=part):
 		O.step()

@@ -4,7 +4,6 @@
 import math
 
 import pytest
-import yade
 from contactScene import floor, sphere, springs
 from tiers import engines, run
 from yade import RunawayGuard, Vector3
