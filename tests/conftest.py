@@ -13,7 +13,8 @@ import sys
 
 import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "py"))
+TESTS = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [os.path.join(os.path.dirname(TESTS), "py"), os.path.join(TESTS, "engines")]  # the package, and the scenes that tests share
 
 
 def _startYade():
@@ -34,6 +35,7 @@ def _startYade():
 
 _startYade()
 import hexmembrane  # noqa: E402  (needs YADE started)
+from tiers import TIERS  # noqa: E402
 
 
 @pytest.fixture
@@ -45,3 +47,9 @@ def O():
 	yade.O.engines = []
 	yield yade.O
 	yade.O.reset()
+
+
+@pytest.fixture(params=TIERS)
+def tier(request):
+	"""Each tier in turn, for a test whose body builds its list of engines with tiers.engines."""
+	return request.param

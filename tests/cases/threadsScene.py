@@ -1,45 +1,47 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Run by test_threads.py inside YADE with a number of threads: a pressed membrane round a few grains; writes positions and velocities."""
+"""Run by test_threads.py inside YADE with a number of threads: writes the motion and the forces of a specimen after 300 steps, by tier, scene and threads."""
 
+import os
 import sys
 
-import numpy as np
-
 import hexmembrane  # noqa: F401
-from membraneScene import makeMembrane, shake, stateOf
-from yade import (
-	Bo1_Sphere_Aabb,
-	ForceResetter,
-	Ig2_Sphere_Sphere_ScGeom,
-	InsertionSortCollider,
-	InteractionLoop,
-	Ip2_FrictMat_FrictMat_FrictPhys,
-	Law2_ScGeom_FrictPhys_CundallStrack,
-	NewtonIntegrator,
-	O,
-	utils,
-)
-from yade.wrapper import MembraneBonds, MembraneORings, MembranePressure, MembraneRadialServo
+import numpy as np
+from specimenScene import build
+from tiers import forces, loop, run, state
+from yade import O
 
-file, withGrains = sys.argv[-2], sys.argv[-1] == "grains"
-m = makeMembrane(mask=3)
-shake(m, 5e-5)
-random = np.random.default_rng(7)
-if withGrains:
-	for z in np.arange(0.003, 0.028, 0.006):
-		for a in np.arange(0, 6.2, 0.35):
-			O.bodies.append(utils.sphere((0.0168 * np.cos(a + z), 0.0168 * np.sin(a + z), z + random.uniform(0, 1e-4)), 0.003205))
-O.engines = [
-	ForceResetter(),
-	InsertionSortCollider([Bo1_Sphere_Aabb()], avoidSelfInteractionMask=2, verletDist=1e-4),
-	InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_FrictMat_FrictMat_FrictPhys()], [Law2_ScGeom_FrictPhys_CundallStrack()]),
-	MembraneBonds(membrane=m, kn=5e4),
-	MembranePressure(membrane=m, pressure=2e3),
-	MembraneRadialServo(membrane=m, pressure=2e3),
-	MembraneORings(membrane=m),
-	NewtonIntegrator(damping=0.2),
-]
-O.dt = 2e-6
-O.run(300, True)
-assert (O.interactions.countReal() > 0) == withGrains
-np.save(file, stateOf([b.id for b in O.bodies]))
+SCENES = {
+	"membrane": dict(),
+	"membrane with shear": dict(poisson=0.2),
+	"rough membrane": dict(membraneFriction=0.3, poisson=0.2, gain=0.05, pressureGain=0.05),
+	"wall": dict(lateral="wall"),
+}
+HALF = 150
+
+
+def motion(tier, scene, threads=0, savedTo=None):
+	"""State and forces after 2 HALF steps; saved and loaded in the middle when a file is given."""
+	O.reset()
+	build(tier, spin=0.02, velocity=0.05, substeps=50, **SCENES[scene])
+	if tier == "compact":
+		loop().ompThreads = threads or -1
+	run(HALF)
+	if savedTo:
+		O.save(savedTo, quiet=True)
+		O.reset()
+		O.load(savedTo, quiet=True)
+	run(HALF)
+	return np.hstack([state(), forces()])
+
+
+if __name__ == "__main__":
+	file, found = sys.argv[-1], {}
+	for scene in SCENES:
+		for threads in range(1, O.numThreads + 1):
+			for again in ("", " again"):
+				found["compact %s %d%s" % (scene, threads, again)] = motion("compact", scene, threads)
+		found["compact %s loaded" % scene] = motion("compact", scene, 1, savedTo=file + ".yade.gz")
+	for scene in ("membrane", "rough membrane"):
+		found["reference %s" % scene] = motion("reference", scene)
+	os.remove(file + ".yade.gz")
+	np.savez(file, **found)

@@ -2,21 +2,28 @@
 """Small membrane scenes that several tests share."""
 
 import numpy as np
+import tiers
+import yade
+from contactScene import springs
+from yade import O, Vector3, utils
 
 RADIUS, HEIGHT, PARTICLE = 0.020, 0.030, 0.002
+KN = 2e5  #: of the contacts (N/m)
 
 
 def makeMembrane(**changes):
 	"""A generated HexMembrane of about 900 spheres on an empty scene with a frictionless material."""
-	from yade import FrictMat, O
-	from yade.wrapper import HexMembrane
-
-	O.materials.append(FrictMat(young=1e8, poisson=0.3, frictionAngle=0.0, density=1000))
-	arguments = dict(specimenRadius=RADIUS, specimenHeight=HEIGHT, particleRadius=PARTICLE)
+	springs(KN, KN, friction=0, density=1000)
+	arguments = dict(specimenRadius=RADIUS, specimenHeight=HEIGHT, particleRadius=PARTICLE, mask=3)  # its spheres do not collide with each other
 	arguments.update(changes)
-	membrane = HexMembrane(**arguments)
+	membrane = yade.HexMembrane(**arguments)
 	membrane.generate()
 	return membrane
+
+
+def slack(membrane):
+	"""Bonds of no stiffness to speak of: the compact tier wants bonds, and the test wants their forces below all rounding."""
+	return yade.MembraneBonds(membrane=membrane, kn=1e-30)
 
 
 def positions(membrane):
@@ -25,8 +32,6 @@ def positions(membrane):
 
 def shake(membrane, size, seed=1):
 	"""Moves every particle that is not an O-ring by up to `size` in each direction; returns the new positions."""
-	from yade import O, Vector3
-
 	random = np.random.default_rng(seed)
 	for i, group in zip(membrane.ids, membrane.groups):
 		if group != 1:
@@ -35,45 +40,25 @@ def shake(membrane, size, seed=1):
 
 
 def forcesOn(ids):
-	from yade import O
-
-	return np.array([tuple(O.forces.f(i)) for i in ids])
+	return tiers.forces(ids)[:, :3]
 
 
-def stateOf(ids):
-	"""Positions and velocities of bodies as one array, for exact comparison."""
-	from yade import O
-
-	return np.array([tuple(O.bodies[i].state.pos) + tuple(O.bodies[i].state.vel) + tuple(O.bodies[i].state.angVel) for i in ids])
+def inward(x):
+	"""Horizontal unit vector from a point to the axis."""
+	return -Vector3(x[0], x[1], 0).normalized()
 
 
-def pressOnCore(m, group, *engines, steps=3000):
-	"""Run a membrane (mask 3) whose particles of a group stand against fixed spheres, radially inside, with engines that press and hold it."""
-	import yade
-	from yade import (
-		Bo1_Sphere_Aabb,
-		ForceResetter,
-		Ig2_Sphere_Sphere_ScGeom,
-		InsertionSortCollider,
-		InteractionLoop,
-		Ip2_FrictMat_FrictMat_FrictPhys,
-		Law2_ScGeom_FrictPhys_CundallStrack,
-		NewtonIntegrator,
-		O,
-		utils,
-	)
-
-	for i, g in zip(m.ids, m.groups):
-		if g == group:
+def core(membrane, groups, depth):
+	"""Fixed spheres, one behind each particle of these groups, `depth` further in."""
+	for i, group in zip(membrane.ids, membrane.groups):
+		if group in groups:
 			x = O.bodies[i].state.pos
-			inward = -yade.Vector3(x[0], x[1], 0).normalized()
-			O.bodies.append(utils.sphere(x + inward * 2 * m.sphereRadius, m.sphereRadius, fixed=True))
-	O.engines = [
-		ForceResetter(),
-		InsertionSortCollider([Bo1_Sphere_Aabb()], avoidSelfInteractionMask=2, verletDist=1e-4),
-		InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_FrictMat_FrictMat_FrictPhys()], [Law2_ScGeom_FrictPhys_CundallStrack()]),
-		*engines,
-		NewtonIntegrator(damping=0.5),
-	]
-	O.dt = 0.2 * (O.bodies[m.ids[200]].state.mass / (1e8 * m.sphereRadius)) ** 0.5
-	O.run(steps, True)
+			O.bodies.append(utils.sphere(x + depth * inward(x), membrane.sphereRadius, fixed=True))
+
+
+def pressOnCore(tier, membrane, group, *inner, steps=3000):
+	"""Run a membrane (mask 3) whose particles of a group stand against fixed spheres, radially inside, with engines that press and hold it."""
+	core(membrane, [group], 2 * membrane.sphereRadius)
+	O.engines = tiers.engines(tier, inner, damping=0.5, substeps=100)
+	O.dt = 0.2 * (O.bodies[membrane.ids[200]].state.mass / KN) ** 0.5
+	tiers.run(steps)

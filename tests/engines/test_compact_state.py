@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The compact tier's state: saved and loaded, taken over from the reference tier and handed back, changed by scripts, and refused."""
 
+import builtins
+
+import hexmembrane.scene
 import numpy as np
 import pytest
-from compactScene import build, forces, referenceEngines, run, state
+import yade
+from hexmembrane import measure
+from specimenScene import bondGrains, build
+from tiers import TIERS, engines, forces, loop, owed, run, state, writeContacts
 
-GRAINS = 150  # of compactScene.build
+GRAINS = 150  # of specimenScene.build
 MOVING = dict(spin=0.05, velocity=0.05)
 
 
@@ -56,58 +62,63 @@ def test_contactsMoveBetweenTiers(O):
 	O.reset()
 	made = build("reference", **MOVING)
 	run(50)
-	inner = list(made.values())
-	import yade
-
-	loop = yade.CompactLoop(engines=inner, damping=0.2, substeps=10)
-	O.engines = [yade.ForceResetter(), loop]
+	O.engines = engines("compact", made.values(), damping=0.2, substeps=10)
 	run(50)
 	assert O.interactions.countReal() == 0
-	loop.exportContacts()
-	assert O.interactions.countReal() == loop.contactCount()
-	O.engines = referenceEngines(inner, 0.2)
+	loop().exportContacts()
+	assert O.interactions.countReal() == loop().contactCount()
+	O.engines = engines("reference", made.values(), damping=0.2)
 	run(50)
 	moved = np.abs(whole[:, 3:6]).max()
 	assert np.abs(state() - whole)[:, 3:6].max() < 1e-7 * moved
 
 
+@pytest.mark.xfail(strict=False, reason="lead: a change of tier loses half a step's work; back in the reference tier the way since is booked with old forces")
+def test_worksGoOnBetweenTiers(O):
+	"""reference -> compact -> reference: each engine has done the work that it does in one tier."""
+	works = []
+	for second in ("reference", "compact"):
+		O.reset()
+		made = build("reference", grains=40, porosity=0.5, particleRadius=4e-3, **MOVING)
+		for tier in ("reference", second, "reference"):
+			if tier != "reference" or loop():
+				writeContacts()
+				O.engines = engines(tier, made.values(), damping=0.2, substeps=10)
+			run(20)
+		works.append({name: engine.work for name, engine in made.items() if hasattr(engine, "work")})
+	assert all(works[0][name] for name in ("pressure", "servo", "top", "oRings"))
+	assert works[1] == pytest.approx(works[0], rel=1e-6)
+
+
 def test_contactBondsMoveBetweenTiersAndBreakAlike(O):
 	"""Bonds of PFC's linear contact bond, made in the reference tier, of strengths that some contacts exceed."""
-
-	def bondAll():
-		count = 0
-		for i in O.interactions:
-			if i.isReal and max(i.id1, i.id2) < GRAINS:
-				strength = 0.02 * 3 ** ((i.id1 + i.id2) % 8)
-				i.phys.bond(strength, strength)
-				count += 1
-		return count
 
 	def bonded():
 		return {tuple(sorted((i.id1, i.id2))) for i in O.interactions if i.isReal and i.phys.bonded}
 
 	made = build("reference", **MOVING)
 	run(20)
-	begun = bondAll()
+	begun = bondGrains(0.02)
+	O.trackEnergy = True
 	run(40)
-	whole, left = state(), bonded()
+	whole, left, setFree = state(), bonded(), O.energy["bondDissip"]
+	assert setFree > 0
 	assert 0.1 * begun < len(left) < 0.9 * begun
 	O.reset()
 	made = build("reference", **MOVING)
 	run(20)
-	bondAll()
-	import yade
-
-	loop = yade.CompactLoop(engines=list(made.values()), damping=0.2, substeps=10)
-	O.engines = [yade.ForceResetter(), loop]
+	bondGrains(0.02)
+	O.trackEnergy = True
+	O.engines = engines("compact", made.values(), damping=0.2, substeps=10)
 	run(20)
 	O.saveTmp("bonds")
 	O.reset()
 	O.loadTmp("bonds")
 	run(20)
+	assert O.energy["bondDissip"] == pytest.approx(setFree, rel=1e-6)
 	moved = np.abs(whole[:, 3:6]).max()
 	assert np.abs(state() - whole)[:, 3:6].max() < 1e-7 * moved
-	O.engines[1].exportContacts()
+	loop().exportContacts()
 	assert bonded() == left
 
 
@@ -116,9 +127,7 @@ def test_bondsWithASmoothMembraneAreRefused(O):
 	run(20)
 	contact = next(i for i in O.interactions if i.isReal and i.phys.spheres and max(i.id1, i.id2) >= GRAINS)
 	contact.phys.bond(1, 1)
-	import yade
-
-	O.engines = [yade.ForceResetter(), yade.CompactLoop(engines=list(made.values()), damping=0.2)]
+	O.engines = engines("compact", made.values(), damping=0.2)
 	with pytest.raises(RuntimeError, match="bonded without friction, grain and membrane; fix: bonds among grains only"):
 		run(1)
 	assert contact.isReal and contact.phys.bonded, "nothing is lost"
@@ -141,9 +150,9 @@ def test_exportedContactsAreThoseOfTheReference(O):
 	run(40)
 	reference = contacts()
 	O.reset()
-	made = build("compact", **MOVING)
+	build("compact", **MOVING)
 	run(40)
-	made["loop"].exportContacts()
+	loop().exportContacts()
 	compact = contacts()
 	assert set(reference) == set(compact)
 	common = [(reference[key], compact[key]) for key in reference]
@@ -155,32 +164,62 @@ def test_exportedContactsAreThoseOfTheReference(O):
 	assert O.interactions.countReal() == 0  # stale ones are gone
 
 
-def test_scriptsMayMoveAndAddBodies(O):
-	from yade import utils
+def test_labelsOfEngines(O, tier, tmp_path, request):
+	"""An engine's label is a variable, as YADE makes it, wherever the engine stands; after O.load it is the loaded engine's."""
+	owed(request, tier, "engines inside have no labels")
+	made = build(tier, velocity=0.05)
+	made["top"].label = "topDriveOfATest"
+	O.engines = O.engines
+	try:
+		assert builtins.topDriveOfATest == made["top"] and O.labeledEngine("topDriveOfATest") == made["top"]
+		run(20)
+		file = str(tmp_path / "state.yade.gz")
+		O.save(file, quiet=True)
+		O.load(file, quiet=True)
+		drive = builtins.topDriveOfATest
+		assert not drive == made["top"] and drive.force == made["top"].force
+		before = drive.displacement
+		drive.velocity = 0.1  # a handle to the engine that runs
+		run(20)
+		assert drive.displacement - before == pytest.approx(20 * 0.1 * O.dt, rel=0.03)  # the first of the 20 steps is still of before
+	finally:
+		vars(builtins).pop("topDriveOfATest", None)
 
-	build("compact", velocity=0.05)
-	run(20)
-	O.bodies[3].state.vel = (0, 0, 1.5)
-	run(1)
-	assert O.bodies[3].state.vel[2] > 0.5
-	new = O.bodies.append(utils.sphere((0.06, 0, 0.02), 1e-3, material="grain"))
-	run(20)
-	assert np.isfinite(state()).all()
-	O.bodies.erase(new)
-	run(20)
-	assert np.isfinite(np.array([tuple(b.state.pos) for b in O.bodies])).all()
+
+@pytest.mark.parametrize(
+	"options",
+	[
+		pytest.param(dict(gain=0.05, pressureGain=0.05), marks=pytest.mark.xfail(strict=False, reason="lead: a row of records reads O.interactions")),
+		pytest.param(dict(lateral="wall"), marks=pytest.mark.xfail(strict=False, reason="lead: a row of records reads O.interactions")),
+	],
+	ids=["membrane", "wall"],
+)
+def test_aRowOfRecordsNeedsNoExport(O, options):
+	"""Each column as in the reference tier, from the arrays as they are."""
+	rows = []
+	for tier in TIERS:
+		O.reset()
+		O.trackEnergy = True
+		build(tier, spin=0.02, velocity=0.05, **options)
+		O.engines = [*O.engines, yade.RunawayGuard()]
+		scene = hexmembrane.scene.Scene()
+		run(20)
+		reference = measure.Reference.of(scene)
+		run(100)
+		rows.append(measure.row(scene, measure.Grains.of(scene.grainIds()), reference, "shear", 0.0))
+	apart = {name: (value, rows[1][name]) for name, value in rows[0].items() if rows[1][name] != pytest.approx(value, rel=1e-6, abs=1e-12)}
+	assert not apart
 
 
-def test_forcesFromOutsideAct(O):
+def test_forcesFromOutsideAct(O, tier):
 	"""A force that an engine before it adds is held for the iteration: a free sphere falls as told."""
-	import yade
-
-	O.materials.append(yade.LinearMat(emod=1e7, kratio=3, friction=0, density=1000, label="m"))
-	a, b = (O.bodies.append(yade.utils.sphere((x, 0, 0), 1e-3, material="m")) for x in (0.0, 0.1))
-	O.engines = [yade.ForceResetter(), yade.PyRunner(command="O.forces.addF(%d, (0, 0, -1e-3))" % a, iterPeriod=1, initRun=True), yade.CompactLoop(damping=0, substeps=10)]
+	O.materials.append(yade.LinearMat(emod=1e7, kratio=3, friction=0, density=1000))
+	a, b = (O.bodies.append(yade.utils.sphere((x, 0, 0), 1e-3)) for x in (0.0, 0.1))
+	pushing = yade.PyRunner(command="O.forces.addF(%d, (0, 0, -1e-3))" % a, iterPeriod=1, initRun=True)
+	O.engines = engines(tier, before=[pushing], substeps=10)
 	O.dt = 1e-5
-	run(20)
 	steps = 20
+	run(steps)
 	fall = -1e-3 / O.bodies[a].state.mass * O.dt**2 * steps * (steps + 1) / 2
 	assert O.bodies[a].state.pos[2] == pytest.approx(fall, rel=1e-12)
 	assert tuple(O.bodies[b].state.pos) == (0.1, 0, 0)
@@ -195,52 +234,37 @@ def test_aRunawaySphereStopsTheRun(O):
 			O.step()
 
 
-def test_orientationsTurn(O):
-	import yade
-
-	O.materials.append(yade.LinearMat(emod=1e7, kratio=3, friction=0, density=1000, label="m"))
-	b = O.bodies.append(yade.utils.sphere((0, 0, 0), 1e-3, material="m"))
+def test_orientationsTurn(O, tier):
+	O.materials.append(yade.LinearMat(emod=1e7, kratio=3, friction=0, density=1000))
+	b = O.bodies.append(yade.utils.sphere((0, 0, 0), 1e-3))
 	O.bodies[b].state.angVel = (0, 0, 2.0)
-	O.engines = [yade.ForceResetter(), yade.CompactLoop(substeps=50)]
+	O.engines = engines(tier, substeps=50)
 	O.dt = 1e-3
 	run(200)
 	axis, angle = O.bodies[b].state.ori.toAxisAngle()
 	assert angle * axis[2] == pytest.approx(0.4, rel=1e-9)
 
 
-def wrong(O, change):
-	import yade
-
-	made = build("compact")
-	change(made, yade)
-	with pytest.raises((RuntimeError, ValueError)) as caught:
-		O.step()
-		O.step()
-	assert "fix: " in str(caught.value)
-	return str(caught.value)
-
-
 @pytest.mark.parametrize(
 	"change, says",
 	[
-		(lambda made, yade: setattr(made["loop"], "damping", 1.5), "CompactLoop.damping = 1.5"),
-		(lambda made, yade: setattr(made["loop"], "substeps", 0), "CompactLoop.substeps = 0"),
-		(lambda made, yade: setattr(made["loop"], "skin", -1.0), "CompactLoop.skin = -1"),
-		(lambda made, yade: setattr(made["loop"], "engines", made["loop"].engines + [yade.NewtonIntegrator()]), "NewtonIntegrator"),
-		(lambda made, yade: setattr(made["loop"], "engines", made["loop"].engines * 2), "has two MembraneBonds"),
-		(lambda made, yade: setattr(made["loop"], "engines", made["loop"].engines[1:]), "without MembraneBonds"),
-		(lambda made, yade: setattr(yade.O.bodies[0], "mat", yade.FrictMat()), "no LinearMat"),
-		(lambda made, yade: setattr(yade.O.bodies[0], "shape", yade.Box(extents=(1, 1, 1))), "is a Box"),
-		(lambda made, yade: setattr(yade.O.bodies[0].state, "blockedDOFs", "x"), "degrees of freedom"),
-		(lambda made, yade: setattr(yade.O.bodies[0].state, "mass", 0.0), "mass = 0"),
-		(lambda made, yade: setattr(yade.O.bodies[0], "mask", 4), "no bit in common"),
-		(lambda made, yade: setattr(yade.O, "engines", [made["loop"]]), "ForceResetter"),
-		(lambda made, yade: yade.O.bodies.clump([0, 1]), "clump"),
-		(lambda made, yade: setattr(yade.O, "periodic", True), "periodic"),
+		(lambda: setattr(loop(), "damping", 1.5), "CompactLoop.damping = 1.5"),
+		(lambda: setattr(loop(), "substeps", 0), "CompactLoop.substeps = 0"),
+		(lambda: setattr(loop(), "skin", -1.0), "CompactLoop.skin = -1"),
+		(lambda: setattr(loop(), "engines", loop().engines + [yade.NewtonIntegrator()]), "NewtonIntegrator"),
+		(lambda: setattr(loop(), "engines", loop().engines * 2), "has two MembraneBonds"),
+		(lambda: setattr(loop(), "engines", loop().engines[1:]), "without MembraneBonds"),
+		(lambda: setattr(yade.O, "engines", [loop()]), "ForceResetter"),
 	],
 )
-def test_whatItDoesNotKnowIsRefused(O, change, says):
-	assert says in wrong(O, change)
+def test_enginesThatAreNotRight(O, change, says):
+	"""What is refused of bodies and scene is in test_compact_contract."""
+	build("compact")
+	change()
+	with pytest.raises((RuntimeError, ValueError)) as caught:
+		O.step()
+		O.step()
+	assert says in str(caught.value) and "fix: " in str(caught.value)
 
 
 HARD = {
@@ -266,19 +290,19 @@ def test_criticalStepIsHonest(O, options):
 	def fastest():
 		return np.abs(state()[:, 3:6]).max()
 
-	made = build("compact", damping=0.6, **options)
+	build("compact", damping=0.6, **options)
 	O.dt = 2e-7
 	run(20)
 	for _ in range(20):  # to rest; contacts form meanwhile
-		O.dt = 0.3 * made["loop"].criticalTimeStep()
+		O.dt = 0.3 * loop().criticalTimeStep()
 		run(300)
-	made["loop"].damping = damping
-	O.dt = 0.8 * made["loop"].criticalTimeStep()
+	loop().damping = damping
+	O.dt = 0.8 * loop().criticalTimeStep()
 	run(200)
 	before = fastest()
 	run(3000)
 	assert fastest() < 5 * before + 0.01  # an unstable mode would have grown by many orders
-	O.dt = 2 * made["loop"].criticalTimeStep()
+	O.dt = 2 * loop().criticalTimeStep()
 	with pytest.raises(RuntimeError, match="half a skin"):
 		for _ in range(300):
 			O.step()

@@ -7,23 +7,24 @@ import subprocess
 import sys
 
 import pytest
-from contactScene import EMOD, FRICTION, SOIL, engines, law, material, pair, swarm
+from contactScene import EMOD, FRICTION, SOIL, law, material, pair, referenceEngines, swarm
+from tiers import contact, engines
 from yade import LinearMat, LinearPhys, utils
 
 R1, R2 = 2e-3, 3e-3
 SHAPE = math.pi * R1**2 / (R1 + R2)
 
 
-def contactOf(O, one, other, bonds=False):
+def contactOf(O, tier, one, other, bonds=False):
 	"""Phys of the contact of a sphere R1 of material `one` and a sphere R2 of material `other`."""
 	O.materials.append(LinearMat(**one))
 	O.materials.append(LinearMat(**other))
-	a, b = pair(O, R1, R2, 1e-6)
+	a, b = pair(R1, R2, 1e-6)
 	O.bodies[a].material, O.bodies[b].material = O.materials[0], O.materials[1]
-	engines(O, bonds=bonds)
+	O.engines = engines(tier, bonds=bonds)
 	O.dt = 1e-9
 	O.step()
-	return O.interactions[a, b].phys
+	return contact(a, b).phys
 
 
 def series(a, b):
@@ -31,33 +32,34 @@ def series(a, b):
 
 
 @pytest.mark.parametrize("swapped", (False, True))
-def test_twoMaterials(O, swapped):
+def test_twoMaterials(O, tier, swapped):
 	"""Springs in series, a modulus brings 2 pi E* min(R)^2/(R1+R2); friction, rolling friction and bond strengths are the smaller ones."""
 	one = dict(kn=2e5, ks=1e5, friction=0.3, rollingFriction=0.2, cbTensile=3.0, cbShear=4.0)
 	other = dict(emod=EMOD, kratio=2.0, friction=0.5, rollingFriction=0.1, cbTensile=2.0, cbShear=math.inf)
-	phys = contactOf(O, *((other, one) if swapped else (one, other)), bonds=True)
+	phys = contactOf(O, tier, *((other, one) if swapped else (one, other)), bonds=tier == "reference")
 	brought = 2 * EMOD * SHAPE
 	assert phys.kn == pytest.approx(series(2e5, brought), rel=1e-12) and phys.ks == pytest.approx(series(1e5, brought / 2), rel=1e-12)
 	rbar = R1 * R2 / (R1 + R2)
 	assert (phys.tangensOfFrictionAngle, phys.rollingArm) == pytest.approx((0.3, 0.1 * rbar), rel=1e-12)
 	assert phys.kr == pytest.approx(phys.ks * rbar**2, rel=1e-12)
-	assert (phys.bonded, phys.tensileStrength, phys.shearStrength) == (True, 2.0, 4.0)
+	if tier == "reference":  # who bonds contacts is its Ip2
+		assert (phys.bonded, phys.tensileStrength, phys.shearStrength) == (True, 2.0, 4.0)
 
 
-def test_withoutShearStiffnessInOne(O):
-	phys = contactOf(O, dict(kn=2e5, ks=0, friction=0.3, rollingFriction=0.3), dict(kn=2e5, ks=1e5, friction=0.3, rollingFriction=0.3))
+def test_withoutShearStiffnessInOne(O, tier):
+	phys = contactOf(O, tier, dict(kn=2e5, ks=0, friction=0.3, rollingFriction=0.3), dict(kn=2e5, ks=1e5, friction=0.3, rollingFriction=0.3))
 	assert (phys.kn, phys.ks, phys.kr) == (1e5, 0, 0)
 
 
 def test_noBondWhereOneMaterialHasNone(O):
-	phys = contactOf(O, dict(SOIL, cbTensile=1, cbShear=1), dict(SOIL, cbTensile=1), bonds=True)
+	phys = contactOf(O, "reference", dict(SOIL, cbTensile=1, cbShear=1), dict(SOIL, cbTensile=1), bonds=True)
 	assert not phys.bonded
 
 
 def test_bondContactsBondsWhatIsThere(O):
-	material(O, cbTensile=2.0, cbShear=3.0)
-	a, b = pair(O, R1, R2, 1e-6)
-	engines(O)
+	material(cbTensile=2.0, cbShear=3.0)
+	a, b = pair(R1, R2, 1e-6)
+	O.engines = referenceEngines()
 	O.dt = 1e-9
 	functor = O.engines[2].physDispatcher.functors[0]
 	assert functor.bondContacts() == 0
@@ -69,9 +71,9 @@ def test_bondContactsBondsWhatIsThere(O):
 
 
 def test_bondingLetsGoOfTheMoment(O):
-	material(O)
-	a, b = pair(O, R1, R2, 1e-6)
-	engines(O)
+	material()
+	a, b = pair(R1, R2, 1e-6)
+	O.engines = referenceEngines()
 	O.dt = 1e-6
 	O.bodies[b].state.angVel = (0, 1, 0)
 	O.run(10, True)
@@ -101,11 +103,11 @@ def test_frictionIsTheAnglesTangent():
 
 def test_yadesToolSetsFriction(O):
 	"""setContactFriction, made for FrictMat: materials and contacts."""
-	material(O)
-	swarm(O)
-	a, b = pair(O, R1, R2, 1e-6)
+	material()
+	swarm()
+	a, b = pair(R1, R2, 1e-6)
 	O.bodies[a].dynamic = O.bodies[b].dynamic = True
-	engines(O)
+	O.engines = referenceEngines()
 	O.dt = 1e-9
 	O.step()
 	utils.setContactFriction(0.1)
@@ -114,9 +116,9 @@ def test_yadesToolSetsFriction(O):
 
 
 def test_frictionSwitchedOffLetsGoOfTheShear(O):
-	material(O, rollingFriction=0)
-	a, b = pair(O, R1, R2, 1e-6)
-	engines(O)
+	material(rollingFriction=0)
+	a, b = pair(R1, R2, 1e-6)
+	O.engines = referenceEngines()
 	O.dt = 1e-6
 	O.bodies[b].state.angVel = (0, 1, 0)
 	O.run(10, True)
@@ -129,7 +131,7 @@ def test_frictionSwitchedOffLetsGoOfTheShear(O):
 
 def test_timeStepTools(O):
 	"""PWaveTimeStep = R sqrt(rho/E) with E = pi E*/2; the stiffness timestepper knows kr."""
-	material(O)
+	material()
 	O.bodies.append(utils.sphere((0, 0, 0), R1))
 	assert utils.PWaveTimeStep() == pytest.approx(R1 * math.sqrt(SOIL["density"] / (0.5 * math.pi * EMOD)), rel=1e-12)
 
@@ -209,8 +211,8 @@ def test_incompleteMaterialEndsTheRunWithItsMessage():
 		"import conftest, yade, contactScene\n"
 		"from yade import O\n"
 		"O.materials.append(yade.LinearMat(emod=1e8, friction=0.4))\n"
-		"contactScene.pair(O, 1, 1, 1e-3)\n"
-		"contactScene.engines(O)\n"
+		"contactScene.pair(1, 1, 1e-3)\n"
+		"O.engines = contactScene.referenceEngines()\n"
 		"O.step()\n"
 	) % (os.path.dirname(here), here)
 	done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=300)
@@ -220,9 +222,9 @@ def test_incompleteMaterialEndsTheRunWithItsMessage():
 
 def test_nothingBrokeHere(O):
 	"""The counters start at nothing and are not moved by contacts that open without a bond."""
-	material(O)
-	swarm(O)
-	engines(O)
+	material()
+	swarm()
+	O.engines = referenceEngines()
 	O.dt = 5e-7
 	O.run(2000, True)
-	assert (law(O).tensileBreaks, law(O).shearBreaks) == (0, 0)
+	assert (law().tensileBreaks, law().shearBreaks) == (0, 0)

@@ -3,8 +3,9 @@ import math
 
 import numpy as np
 import pytest
-
-from membraneScene import HEIGHT, RADIUS, makeMembrane, positions
+from contactScene import sphere
+from membraneScene import HEIGHT, KN, RADIUS, inward, makeMembrane, positions, slack
+from tiers import engines, owed
 
 
 def test_bodiesAreOrdinarySpheres(O):
@@ -52,26 +53,23 @@ def test_originMovesEverything(O):
 	assert m.meanRadius() == pytest.approx(RADIUS, rel=1e-12)
 
 
-def test_transmittedPressureOfOneContact(O):
-	"""One grain pressed on one particle: the pressure is that radial force over the inner area."""
-	from yade import Ig2_Sphere_Sphere_ScGeom, InteractionLoop, Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_FrictPhys_CundallStrack, Vector3, utils
-
+def test_transmittedPressureOfOneContact(O, tier, request):
+	"""One grain pressed on one particle by 1e-6 m: the pressure is that radial force, kn u, over the inner area."""
+	owed(request, tier, "HexMembrane.transmittedPressure reads O.interactions")
 	m = makeMembrane()
 	index = m.perRing * (m.rings // 2)
 	x = O.bodies[m.ids[index]].state.pos
-	inward = -Vector3(x[0], x[1], 0).normalized()
-	grain = O.bodies.append(utils.sphere(x + inward * (m.sphereRadius + 0.001 - 1e-6), 0.001))
-	O.engines = [InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_FrictMat_FrictMat_FrictPhys()], [Law2_ScGeom_FrictPhys_CundallStrack()])]
-	contact = utils.createInteraction(grain, m.ids[index])
+	sphere(x + inward(x) * (m.sphereRadius + 0.001 - 1e-6), 0.001, fixed=True)
+	O.engines = engines(tier, [slack(m)])
 	O.dt = 1e-9
 	O.step()
-	normal = contact.phys.normalForce.norm()
-	assert normal > 0
 	rows = m.rings - 2 * m.oRingRows
 	area = 2 * math.pi * m.innerRadius * m.ringSpacing * rows
-	assert m.transmittedPressure() == pytest.approx(normal / area, rel=1e-9)
+	assert m.transmittedPressure() == pytest.approx(KN * 1e-6 / area, rel=1e-9)
 	assert m.transmittedPressure(3) == pytest.approx(m.transmittedPressure() * rows / (rows - 2 * m.platenRows), rel=1e-9)
 	assert m.transmittedPressure(2) == 0
+	rings = np.array(m.transmittedByRing())
+	assert rings[m.rings // 2] == pytest.approx(m.transmittedPressure() * rows, rel=1e-9) and np.count_nonzero(rings) == 1
 	with pytest.raises(ValueError, match="group"):
 		m.transmittedPressure(1)
 

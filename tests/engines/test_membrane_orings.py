@@ -1,64 +1,61 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
+"""MembraneORings in both tiers."""
+
 import numpy as np
 import pytest
-
-from membraneScene import makeMembrane, positions
-
-
-def platens():
-	from yade import O, utils
-
-	low, high = O.bodies.append([utils.sphere((0, 0, z), 0.01, fixed=True) for z in (-0.02, 0.05)])
-	O.bodies[low].state.vel = (0, 0, 0.1)
-	O.bodies[high].state.vel = (0.05, 0, -0.3)
-	return low, high
+from contactScene import sphere
+from membraneScene import makeMembrane, positions, slack
+from tiers import engines, find, owed, run
+from yade import MembraneBonds, MembraneORings, NewtonIntegrator, O
 
 
-def test_ridingAndFixed(O):
-	from yade import NewtonIntegrator
-	from yade.wrapper import MembraneORings
+def platens(below=(0, 0, 0), above=(0, 0, 0)):
+	"""Two fixed spheres with these velocities, which stand for the platens; massless, as their kinetic energy is nobody's work here."""
+	ids = [sphere((0, 0, z), 0.01, fixed=True) for z in (-0.02, 0.05)]
+	for i, velocity in zip(ids, (below, above)):
+		O.bodies[i].state.mass = 0
+		O.bodies[i].state.vel = velocity
+	return ids
 
+
+def test_ridingAndFixed(O, tier):
 	m = makeMembrane()
-	low, high = platens()
+	low, high = platens((0, 0, 0.1), (0.05, 0, -0.3))
 	rings = MembraneORings(membrane=m, mode="platens", bottomPlaten=low, topPlaten=high)
-	O.engines = [rings, NewtonIntegrator()]
-	O.dt = 1e-3
+	O.engines = engines(tier, [slack(m), rings])
+	O.dt = 1e-4
 	before = positions(m)
-	O.run(10, True)
+	run(100)
 	moved = positions(m) - before
 	rows = m.oRingRows * m.perRing
 	assert np.allclose(moved[:rows], (0, 0, 0.1 * 0.01), rtol=1e-9, atol=1e-15)
 	assert np.allclose(moved[-rows:], (0.05 * 0.01, 0, -0.3 * 0.01), rtol=1e-9, atol=1e-15)
-	assert (moved[rows:-rows] == 0).all()
+	assert np.abs(moved[rows:-rows]).max() < 1e-20  # the slack bonds'
 	rings.mode = "fixed"
 	before = positions(m)
-	O.run(10, True)
-	assert (positions(m) == before).all()
+	run(10)
+	still = positions(m) - before
+	assert (still[:rows] == 0).all() and (still[-rows:] == 0).all() and np.abs(still).max() < 1e-20
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.3])
-def test_energyOfATubeStretchedByItsORings(O, damping):
+def test_energyOfATubeStretchedByItsORings(O, tier, damping):
 	"""elastic + kinetic + damped = work of the O-rings, which ride on platens that part and stop again.
 
 	Kinetic energy and damping are read half a step off: an error linear in the step, small here.
 	"""
-	import yade
-
 	m = makeMembrane()
-	low, high = O.bodies.append([yade.utils.sphere((0, 0, z), 0.01, fixed=True) for z in (-0.02, 0.05)])
-	for i in (low, high):
-		O.bodies[i].state.mass = 0  # their kinetic energy is nobody's work here
-	bonds = yade.MembraneBonds(membrane=m, kn=500.0)
-	rings = yade.MembraneORings(membrane=m, mode="platens", bottomPlaten=low, topPlaten=high)
-	O.engines = [yade.ForceResetter(), bonds, rings, yade.NewtonIntegrator(damping=damping)]
+	low, high = platens()
+	bonds = MembraneBonds(membrane=m, kn=500.0)
+	rings = MembraneORings(membrane=m, mode="platens", bottomPlaten=low, topPlaten=high)
+	O.engines = engines(tier, [bonds, rings], damping=damping, substeps=150)
 	O.trackEnergy = True
 	O.dt = 0.02 * bonds.criticalTimeStep()
 	largest = 0
 	for speed in (0.05, 0.2, 0.0, -0.1):
 		O.bodies[low].state.vel, O.bodies[high].state.vel = (0, 0, -speed), (0.3 * speed, 0, speed)
 		for _ in range(8):
-			for _ in range(150):
-				O.step()
+			run(150)
 			names = dict(O.energy.items())
 			total = names["elastMembrane"] + names["kinetic"] + names.get("nonviscDamp", 0.0)
 			largest = max(largest, rings.work)
@@ -67,62 +64,56 @@ def test_energyOfATubeStretchedByItsORings(O, damping):
 	assert largest > 1e-5 and (damping == 0) == ("nonviscDamp" not in names or names["nonviscDamp"] == 0)
 
 
-def test_workOfAPullAtRest(O):
+def test_workOfAPullAtRest(O, tier, request):
 	"""One ring pulled against springs that answer linearly: the trapezoidal rule gives the stored energy exactly, the inertia's part apart."""
-	import yade
-
+	owed(request, tier, "blockedDOFs of the membrane are not looked at")
 	m = makeMembrane()
 	for i in m.ids:
 		O.bodies[i].state.blockedDOFs = "xyzXYZ"  # no inertia but that of the O-rings
-	low, high = O.bodies.append([yade.utils.sphere((0, 0, z), 0.01, fixed=True) for z in (-0.02, 0.05)])
-	O.bodies[high].state.vel = (0, 0, 1e-3)
-	bonds = yade.MembraneBonds(membrane=m, kn=500.0)
-	rings = yade.MembraneORings(membrane=m, mode="platens", bottomPlaten=low, topPlaten=high)
-	O.engines = [yade.ForceResetter(), bonds, rings, yade.NewtonIntegrator(damping=0.2)]
+	low, high = platens(above=(0, 0, 1e-3))
+	bonds = MembraneBonds(membrane=m, kn=500.0)
+	rings = MembraneORings(membrane=m, mode="platens", bottomPlaten=low, topPlaten=high)
+	O.engines = engines(tier, [bonds, rings], damping=0.2)
 	O.dt = 1e-4
-	for _ in range(101):
-		O.step()
+	run(101)
 	kinetic = 0.5 * m.oRingRows * m.perRing * O.bodies[m.ids[0]].state.mass * 1e-6
 	assert rings.work == pytest.approx(bonds.elasticEnergy() + kinetic, rel=1e-4)
 	assert kinetic < 0.5 * rings.work
 
 
-def test_workGoesOnAfterLoad(O, tmp_path):
-	import yade
-
+def test_workGoesOnAfterLoad(O, tier, tmp_path):
 	m = makeMembrane()
-	low, high = platens()
-	rings = yade.MembraneORings(membrane=m, mode="platens", bottomPlaten=low, topPlaten=high)
-	O.engines = [yade.ForceResetter(), yade.MembraneBonds(membrane=m, kn=500.0), rings, yade.NewtonIntegrator()]
+	low, high = platens((0, 0, 0.1), (0.05, 0, -0.3))
+	rings = MembraneORings(membrane=m, mode="platens", bottomPlaten=low, topPlaten=high)
+	O.engines = engines(tier, [MembraneBonds(membrane=m, kn=500.0), rings])
 	O.dt = 1e-6
-	O.run(30, True)
+	run(30)
 	file = str(tmp_path / "half.yade.bz2")
 	O.save(file)
-	O.run(30, True)
+	run(30)
 	work = rings.work
 	O.reset()
 	O.load(file)
-	O.run(30, True)
-	assert O.engines[2].work == work and work > 0
+	run(30)
+	assert find(MembraneORings).work == work and work > 0
 
 
 def test_wrongPlace(O):
-	from yade import NewtonIntegrator
-	from yade.wrapper import MembraneORings
-
+	"""Of the reference tier: the compact tier's steps have one order."""
 	rings = MembraneORings(membrane=makeMembrane())
 	O.engines = [NewtonIntegrator(), rings]
 	with pytest.raises(RuntimeError, match="comes after NewtonIntegrator"):
 		rings()
 
 
-def test_badInput(O):
-	from yade.wrapper import MembraneORings
-
+def test_badInput(O, tier):
 	m = makeMembrane()
-	with pytest.raises(ValueError, match="'fixed' or 'platens'"):
-		MembraneORings(membrane=m, mode="free")()
-	with pytest.raises(RuntimeError, match="MembraneORings.bottomPlaten = -1"):
-		MembraneORings(membrane=m, mode="platens")()
-	with pytest.raises(RuntimeError, match="MembraneORings.membrane = None"):
-		MembraneORings()()
+	for rings, kind, message in (
+		(MembraneORings(membrane=m, mode="free"), ValueError, "'fixed' or 'platens'"),
+		(MembraneORings(membrane=m, mode="platens"), RuntimeError, "MembraneORings.bottomPlaten = -1"),
+		(MembraneORings(), RuntimeError, "MembraneORings"),
+	):
+		O.engines = engines(tier, [slack(m), rings])
+		with pytest.raises(kind) as error:
+			O.step()
+		assert message in str(error.value) and "fix:" in str(error.value)

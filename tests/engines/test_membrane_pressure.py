@@ -1,42 +1,38 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
+"""MembranePressure in both tiers; on a mesh of one's own, which the compact tier refuses, in the reference tier."""
+
 import numpy as np
 import pytest
-
-from membraneScene import forcesOn, makeMembrane, positions, pressOnCore, shake, stateOf
+from contactScene import sphere
+from membraneScene import KN, forcesOn, inward, makeMembrane, positions, pressOnCore, shake, slack
+from tiers import contact, engines, find, owed, run, state
+from yade import ForceResetter, MembraneBonds, MembranePressure, MembraneRadialServo, NewtonIntegrator, Vector3, utils
 
 P = 1e5
 
 
-def engines(pressure, damping=0.2):
-	from yade import ForceResetter, NewtonIntegrator
-
-	return [ForceResetter(), pressure, NewtonIntegrator(damping=damping)]
-
-
-def test_groupThreeOnly(O):
-	from yade.wrapper import MembranePressure
-
+def test_groupThreeOnly(O, tier):
 	m = makeMembrane()
-	O.engines = engines(MembranePressure(membrane=m, pressure=P))
+	pressure = MembranePressure(membrane=m, pressure=P)
+	O.engines = engines(tier, [slack(m), pressure])
 	O.dt = 1e-9
 	O.step()
 	f, groups, x = forcesOn(m.ids), np.array(m.groups), positions(m)
-	assert (f[groups != 3] == 0).all()
+	assert np.abs(f[groups != 3]).max() < 1e-30  # the slack bonds'
 	inward = -np.einsum("ij,ij->i", f[:, :2], x[:, :2])
 	assert (inward[groups == 3] > 0).all()
 	# a full turn of the lattice: no resultant across the axis
 	assert np.abs(f.sum(axis=0)[:2]).max() < 1e-12 * np.abs(f).sum()
-	assert np.array(O.engines[1].resultant) == pytest.approx(f.sum(axis=0), abs=1e-12 * np.abs(f).sum())
+	assert np.array(pressure.resultant) == pytest.approx(f.sum(axis=0), abs=1e-12 * np.abs(f).sum())
 
 
 @pytest.mark.parametrize("surface", ["inner", "centre"])
-def test_equationsOfTheStudy(O, surface):
+def test_equationsOfTheStudy(O, tier, surface):
 	"""Eqs. 3-5 in numpy, on either surface, on a deformed membrane."""
-	from yade.wrapper import MembranePressure
-
 	m = makeMembrane()
 	x = shake(m, 2e-4)
-	O.engines = engines(MembranePressure(membrane=m, pressure=P, surface=surface))
+	pressure = MembranePressure(membrane=m, pressure=P, surface=surface)
+	O.engines = engines(tier, [slack(m), pressure])
 	O.dt = 1e-9
 	O.step()
 	t = np.array([tuple(k) for k in m.triangles])
@@ -58,18 +54,15 @@ def test_equationsOfTheStudy(O, surface):
 	main = np.array(m.groups) == 3
 	assert np.abs(forcesOn(m.ids)[main] - expected[main]).max() < 1e-12 * np.abs(expected).max()
 	area = sum(np.linalg.norm(areaVectors(y), axis=1) @ main[t[:, k]] / 3 for k in range(3))
-	assert O.engines[1].area == pytest.approx(area, rel=1e-12)
+	assert pressure.area == pytest.approx(area, rel=1e-12)
 
 
 def test_meshOfOnesOwn(O):
 	"""A closed tetrahedron: no resultant, no moment, force = -p dV/dx."""
-	from yade import utils
-	from yade.wrapper import MembranePressure
-
 	corners = [(0, 0, 0), (1, 0, 0.1), (0, 1, 0), (0.2, 0.1, 1)]
 	ids = O.bodies.append([utils.sphere(c, 0.1) for c in corners])
 	pressure = MembranePressure(ids=ids, triangles=[(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)], pressure=P, surface="centre")
-	O.engines = engines(pressure)
+	O.engines = [ForceResetter(), pressure, NewtonIntegrator()]
 	O.dt = 1e-12
 	O.step()
 	f, x = forcesOn(ids), np.array(corners)
@@ -87,9 +80,6 @@ def test_meshOfOnesOwn(O):
 
 def test_workIsPressureTimesVolume(O):
 	"""A closed cube shrunk by hand in small steps: work = -p dV, trapezoidal."""
-	from yade import ForceResetter, utils
-	from yade.wrapper import MembranePressure
-
 	corners = np.array([(i, j, k) for i in (0.0, 1.0) for j in (0.0, 1.0) for k in (0.0, 1.0)])
 	ids = O.bodies.append([utils.sphere(c, 0.1) for c in corners])
 	quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -104,91 +94,131 @@ def test_workIsPressureTimesVolume(O):
 	assert pressure.work == pytest.approx(P * (1 - 0.9**3), rel=1e-5)
 
 
-def test_saveAndLoadContinueExactly(O, tmp_path):
-	from yade.wrapper import MembraneBonds, MembranePressure
-
+def test_saveAndLoadContinueExactly(O, tier, tmp_path):
 	m = makeMembrane()
-	O.engines = engines(MembranePressure(membrane=m, pressure=P))
-	O.engines = O.engines[:1] + [MembraneBonds(membrane=m, kn=5e4)] + O.engines[1:]
+	O.engines = engines(tier, [MembraneBonds(membrane=m, kn=5e4), MembranePressure(membrane=m, pressure=P)], damping=0.2)
 	O.dt = 1e-6
-	O.run(40, True)
+	run(40)
 	file = str(tmp_path / "half.yade.bz2")
 	O.save(file)
-	O.run(40, True)
-	whole, work = stateOf(m.ids), O.engines[2].work
+	run(40)
+	whole, work = state(), find(MembranePressure).work
 	O.reset()
 	O.load(file)
-	assert O.engines[1].membrane is not None
-	O.run(40, True)
-	assert (stateOf(O.engines[2].membrane.ids) == whole).all() and O.engines[2].work == work and work > 0
+	assert find(MembranePressure).membrane is not None
+	run(40)
+	assert (state() == whole).all() and find(MembranePressure).work == work and work > 0
 
 
-def test_closedLoopReachesItsTarget(O):
-	"""A stiff frictionless core, pressure on the triangles of the centres: Rc/(Rc - R) too much arrives, and the loop takes it away."""
-	from yade.wrapper import MembraneBonds, MembranePressure
-
-	m = makeMembrane(mask=3)
+def pressedOnCore(tier):
+	m = makeMembrane()
 	pressure = MembranePressure(membrane=m, pressure=P, surface="centre", gain=0.1, iterPeriod=20)
-	pressOnCore(m, 3, MembraneBonds(membrane=m, kn=1e4), pressure)
-	assert m.transmittedPressure(3) == pytest.approx(P, rel=5e-3)
+	pressOnCore(tier, m, 3, MembraneBonds(membrane=m, kn=1e4), pressure)
+	return m, pressure
+
+
+def test_closedLoopReachesItsTarget(O, tier):
+	"""A stiff frictionless core, pressure on the triangles of the centres: Rc/(Rc - R) too much arrives, and the loop takes it away."""
+	m, pressure = pressedOnCore(tier)
+	assert pressure.transmitted == pytest.approx(P, rel=5e-3)
 	assert pressure.factor == pytest.approx(m.innerRadius / m.centreRadius, rel=0.01)
 	assert pressure.applied == pressure.factor * P and not pressure.saturated
 
 
-def test_closedLoopStopsAtItsLimit(O):
-	"""Nothing inside to press on: the factor stays within its limits and says so."""
-	from yade.wrapper import MembranePressure
+def test_whatArrivesIsReadFromTheLastStep(O, tier, request):
+	"""By the membrane itself, without more ado; the loop's own measure is of up to 20 steps before."""
+	owed(request, tier, "HexMembrane.transmittedPressure and transmittedByRing read O.interactions")
+	m, pressure = pressedOnCore(tier)
+	assert m.transmittedPressure(3) == pytest.approx(pressure.transmitted, rel=1e-3)
+	rings = np.array(m.transmittedByRing())
+	main = np.array(m.groups).reshape(m.rings, m.perRing)[:, 0] == 3
+	assert rings[main] == pytest.approx(P, rel=0.1)
+	assert (rings[~main] == 0).all()
 
+
+@pytest.mark.parametrize("loop", [MembranePressure, MembraneRadialServo], ids=["pressure", "servo"])
+@pytest.mark.parametrize("case", ["at rest", "sliding", "pushed by a script"])
+def test_theLoopsMeasureIsOfNormalForces(O, tier, loop, case, request):
+	"""One grain that presses on one particle from 45 degrees below: kn u cos 45 inwards, over the group's area, is all that is transmitted.
+
+	Not the shear force of a grain that slides, though a part of it acts inwards, nor what a script adds to the particle's force.
+	"""
+	if case != "at rest":
+		owed(request, tier, "the measure is of all forces")
+	m = makeMembrane(platenRows=1)
+	O.materials[0].friction = 1.0
+	group, ring = (3, m.rings // 2) if loop is MembranePressure else (2, m.oRingRows)
+	particle = m.ids[ring * m.perRing]
+	x, u = O.bodies[particle].state.pos, 1e-6
+	normal = (inward(x) - Vector3(0, 0, 1)).normalized()
+	grain = O.bodies[sphere(x + normal * (m.sphereRadius + 0.001 - u), 0.001, fixed=True)]
+	engine = loop(membrane=m, pressure=P, gain=0.1, iterPeriod=1)
+	O.engines = engines(tier, [slack(m), engine])
+	O.dt = 1e-9
+	if case == "sliding":  # shear of half the normal force in one step
+		grain.state.vel = 0.5 * u / O.dt * (inward(x) + Vector3(0, 0, 1)).normalized()
+	if case == "pushed by a script":
+		O.forces.setPermF(particle, 0.1 * inward(x))
+	O.step()
+	rows = m.groups.count(group) / m.perRing
+	area = 2 * np.pi * m.innerRadius * m.ringSpacing * rows
+	assert engine.transmitted == pytest.approx(KN * u / np.sqrt(2) / area, rel=1e-6)
+	if case == "sliding":
+		assert contact(grain.id, particle).phys.shearForce.norm() == pytest.approx(0.5 * KN * u, rel=1e-3)
+
+
+def test_closedLoopStopsAtItsLimit(O, tier):
+	"""Nothing inside to press on: the factor stays within its limits and says so."""
 	m = makeMembrane()
 	pressure = MembranePressure(membrane=m, pressure=P, gain=0.5, iterPeriod=1, maxFactor=1.25)
-	O.engines = engines(pressure)
+	O.engines = engines(tier, [slack(m), pressure])
 	O.dt = 1e-9
 	O.step()
 	O.step()
 	assert pressure.saturated and pressure.factor == 1.25 and pressure.transmitted == 0
 
 
-def bad(**arguments):
-	from yade.wrapper import MembranePressure
-
-	return MembranePressure(**arguments)
-
-
 BAD = [
-	(lambda m: bad(membrane=m), ValueError, "MembranePressure.pressure"),
-	(lambda m: bad(membrane=m, pressure=float("nan")), ValueError, "MembranePressure.pressure = nan"),
-	(lambda m: bad(pressure=1.0), ValueError, "MembranePressure.membrane = None"),
-	(lambda m: bad(membrane=m, ids=[0], triangles=[(0, 0, 0)], pressure=1.0), ValueError, "given together"),
-	(lambda m: bad(membrane=m, pressure=1.0, surface="outer"), ValueError, "'inner' or 'centre'"),
-	(lambda m: bad(ids=[0, 1, 2], triangles=[(0, 1, 2)], pressure=1.0), ValueError, "surfaceOffset"),
-	(lambda m: bad(ids=[0, 1, 2], triangles=[(0, 1, 3)], pressure=1.0, surface="centre"), ValueError, "MembranePressure.triangles[0] = 3"),
-	(lambda m: bad(membrane=m, pressure=1.0, surfaceOffset=-1), ValueError, "MembranePressure.surfaceOffset = -1"),
-	(lambda m: bad(ids=[0, 1, 2], triangles=[(0, 1, 2)], pressure=1.0, surfaceOffset=-2), ValueError, "MembranePressure.surfaceOffset = -2"),
-	(lambda m: bad(membrane=m, pressure=1.0, gain=-0.1), ValueError, "MembranePressure.gain = -0.1"),
-	(lambda m: bad(membrane=m, pressure=1.0, gain=0.1, iterPeriod=0), ValueError, "MembranePressure.iterPeriod = 0"),
-	(lambda m: bad(membrane=m, pressure=1.0, gain=0.1, maxFactor=1.0), ValueError, "MembranePressure.maxFactor = 1"),
-	(lambda m: bad(ids=[0, 1, 2], triangles=[(0, 1, 2)], pressure=1.0, surface="centre", gain=0.1), ValueError, "MembranePressure.gain = 0.1"),
-	(lambda m: bad(ids=[0, 1, 99999], triangles=[(0, 1, 2)], pressure=1.0, surface="centre"), RuntimeError, "body 99999"),
+	(lambda m: MembranePressure(membrane=m), ValueError, "MembranePressure.pressure"),
+	(lambda m: MembranePressure(membrane=m, pressure=float("nan")), ValueError, "MembranePressure.pressure = nan"),
+	(lambda m: MembranePressure(pressure=1.0), ValueError, "MembranePressure.membrane = None"),
+	(lambda m: MembranePressure(membrane=m, ids=[0], triangles=[(0, 0, 0)], pressure=1.0), ValueError, "given together"),
+	(lambda m: MembranePressure(membrane=m, pressure=1.0, surface="outer"), ValueError, "'inner' or 'centre'"),
+	(lambda m: MembranePressure(ids=[0, 1, 2], triangles=[(0, 1, 2)], pressure=1.0), ValueError, "surfaceOffset"),
+	(lambda m: MembranePressure(ids=[0, 1, 2], triangles=[(0, 1, 3)], pressure=1.0, surface="centre"), ValueError, "MembranePressure.triangles[0] = 3"),
+	(lambda m: MembranePressure(membrane=m, pressure=1.0, surfaceOffset=-1), ValueError, "MembranePressure.surfaceOffset = -1"),
+	(lambda m: MembranePressure(ids=[0, 1, 2], triangles=[(0, 1, 2)], pressure=1.0, surfaceOffset=-2), ValueError, "MembranePressure.surfaceOffset = -2"),
+	(lambda m: MembranePressure(membrane=m, pressure=1.0, gain=-0.1), ValueError, "MembranePressure.gain = -0.1"),
+	(lambda m: MembranePressure(membrane=m, pressure=1.0, gain=0.1, iterPeriod=0), ValueError, "MembranePressure.iterPeriod = 0"),
+	(lambda m: MembranePressure(membrane=m, pressure=1.0, gain=0.1, maxFactor=1.0), ValueError, "MembranePressure.maxFactor = 1"),
+	(lambda m: MembranePressure(ids=[0, 1, 2], triangles=[(0, 1, 2)], pressure=1.0, surface="centre", gain=0.1), ValueError, "MembranePressure.gain = 0.1"),
+	(lambda m: MembranePressure(ids=[0, 1, 99999], triangles=[(0, 1, 2)], pressure=1.0, surface="centre"), RuntimeError, "body 99999"),
 ]
 
 
 @pytest.mark.parametrize("make, kind, message", BAD, ids=[b[2] for b in BAD])
-def test_badInput(O, make, kind, message):
-	engine = make(makeMembrane())
+def test_badInput(O, tier, make, kind, message):
+	m = makeMembrane()
+	pressure = make(m)
+	O.engines = engines(tier, [slack(m), pressure])
 	with pytest.raises(kind) as error:
-		engine()
+		O.step()
 	assert message in str(error.value) and "fix:" in str(error.value)
 	with pytest.raises(RuntimeError, match="run a step first"):
-		engine.resultant
+		pressure.resultant
 
 
-def test_erasedBodyIsNamed(O):
-	from yade.wrapper import MembranePressure
+def test_meshOfABodyThatIsNotThere(O):
+	makeMembrane()
+	with pytest.raises(RuntimeError, match="body 99999.*fix: "):
+		MembranePressure(ids=[0, 1, 99999], triangles=[(0, 1, 2)], pressure=1.0, surface="centre")()
 
+
+def test_erasedBodyIsNamed(O, tier):
 	m = makeMembrane()
-	O.engines = engines(MembranePressure(membrane=m, pressure=P))
+	O.engines = engines(tier, [slack(m), MembranePressure(membrane=m, pressure=P)])
 	O.dt = 1e-8
-	O.run(2, True)
+	run(2)
 	O.bodies.erase(m.ids[150])
-	with pytest.raises(RuntimeError, match=r"body %d .* gone \(iteration 2\)" % m.ids[150]):
+	with pytest.raises(RuntimeError, match=r"body %d .*gone.*; fix: " % m.ids[150]):
 		O.step()

@@ -1,56 +1,40 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the membrane's own forces add to the pressure on the soil, and its axial pull, in YADE's scene."""
+"""What the membrane's own forces add to the pressure on the soil, and its axial pull, in both tiers."""
 
 import math
 
 import numpy as np
 import pytest
+import yade
 from hexmembrane import correction
-
-from membraneScene import HEIGHT, forcesOn, makeMembrane, positions, shake
+from membraneScene import HEIGHT, core, forcesOn, makeMembrane, positions, shake
+from tiers import engines, owed, run
+from yade import MembraneBonds, MembraneORings, MembranePressure, MembraneRadialServo, O
 
 P = 1e5
 
 
-def coreScene(stretch, **arguments):
+def coreScene(tier, stretch):
 	"""A membrane on a stiff core of fixed spheres, one behind each particle, pushed out so that the membrane is stretched by about `stretch`."""
-	import yade
-	from yade import O, utils
-
-	m = makeMembrane(mask=3, **arguments)
-	for i, group in zip(m.ids, m.groups):
-		if group == 1:
-			continue
-		x = O.bodies[i].state.pos
-		outward = yade.Vector3(x[0], x[1], 0).normalized()
-		O.bodies.append(utils.sphere(x + outward * (stretch * m.centreRadius - 2 * m.sphereRadius), m.sphereRadius, fixed=True))
-	bonds = yade.MembraneBonds(membrane=m, kn=1.5e5)
-	pressure = yade.MembranePressure(membrane=m, pressure=P)
-	O.engines = [
-		yade.ForceResetter(),
-		yade.InsertionSortCollider([yade.Bo1_Sphere_Aabb()], avoidSelfInteractionMask=2, verletDist=1e-4),
-		yade.InteractionLoop(
-			[yade.Ig2_Sphere_Sphere_ScGeom()], [yade.Ip2_FrictMat_FrictMat_FrictPhys()], [yade.Law2_ScGeom_FrictPhys_CundallStrack()]
-		),
-		bonds,
-		pressure,
-		yade.MembraneRadialServo(membrane=m, pressure=P),
-		yade.MembraneORings(membrane=m),
-		yade.NewtonIntegrator(damping=0.5),
-	]
+	m = makeMembrane()
+	core(m, (2, 3), 2 * m.sphereRadius - stretch * m.centreRadius)
+	bonds = MembraneBonds(membrane=m, kn=1.5e5)
+	pressure = MembranePressure(membrane=m, pressure=P)
+	inner = [bonds, pressure, MembraneRadialServo(membrane=m, pressure=P), MembraneORings(membrane=m)]
+	O.engines = engines(tier, inner, damping=0.5, substeps=100)
 	O.dt = 0.1 * bonds.criticalTimeStep()
 	return m, bonds, pressure
 
 
-def test_appliedPressureAndTheMembranesShareArrive(O):
+def test_appliedPressureAndTheMembranesShareArrive(O, tier, request):
 	"""transmitted = applied + share, with a share that is as large as the pressure.
 
 	To 0.3 % with the nominal pressure (34 spheres a ring: the applied forces belong to a polygon, whose perimeter is 1 - (pi/n)^2/6 of the
 	circle's), and to rounding and what is left of motion with the radial parts of the forces that were really applied.
 	"""
-	m, bonds, pressure = coreScene(0.01)
-	for _ in range(3000):
-		O.step()
+	owed(request, tier, "HexMembrane.transmittedPressure and transmittedByRing read O.interactions")
+	m, bonds, pressure = coreScene(tier, 0.01)
+	run(3000)
 	assert np.linalg.norm(forcesOn([i for i, g in zip(m.ids, m.groups) if g != 1]), axis=1).max() < 1e-4
 	assert bonds.radialShare(3) > 0.3 * P
 	for group in (0, 2, 3):
@@ -74,15 +58,14 @@ def test_appliedPressureAndTheMembranesShareArrive(O):
 
 
 @pytest.mark.parametrize("kind", ["central", "shear", "broken"])
-def test_axialPullIsTheForceOnAllThatIsAbove(O, kind):
+def test_axialPullIsTheForceOnAllThatIsAbove(O, tier, kind, request):
 	"""Bond forces are internal: those on the particles above a plane add up to the pull through it, with shear forces and broken bonds too."""
-	import yade
-
+	owed(request, tier, "MembraneBonds.axialTension is taken at the places after the step, O.forces before")
 	m = makeMembrane(rotations=kind != "central")
 	shake(m, 2e-4)
 	springs = {"central": {}, "shear": dict(ks=200.0), "broken": dict(ks=200.0, tensileStrength=0.03)}[kind]
-	bonds = yade.MembraneBonds(membrane=m, kn=500.0, **springs)
-	O.engines = [yade.ForceResetter(), bonds, yade.NewtonIntegrator()]
+	bonds = MembraneBonds(membrane=m, kn=500.0, **springs)
+	O.engines = engines(tier, [bonds])
 	O.dt = 0.2 * bonds.criticalTimeStep()
 	for _ in range(20):
 		before = positions(m)[:, 2]
@@ -94,18 +77,17 @@ def test_axialPullIsTheForceOnAllThatIsAbove(O, kind):
 		assert bonds.axialTension(z) == pytest.approx(-force[before >= z].sum(), abs=1e-12 * np.abs(force).sum())
 
 
-def test_termsOfACylinderPulledLengthwise(O):
+def test_termsOfACylinderPulledLengthwise(O, tier):
 	"""T_mid = T_end = 2 pi r N_z with r and eps_theta kept: N_z = E t/(1 - nu^2) eps_z; the hoop force nu N_z over the inner radius."""
-	import yade
-
 	m = makeMembrane(particleRadius=0.0006)
 	kn, strain = 500.0, 1e-5
 	for i in m.ids:
 		x = O.bodies[i].state.pos
 		O.bodies[i].state.pos = (x[0], x[1], x[2] * (1 + strain))
-	bonds = yade.MembraneBonds(membrane=m, kn=kn)
-	pressing = yade.MembranePressure(membrane=m, pressure=P)
-	O.engines = [yade.ForceResetter(), bonds, pressing]
+	bonds = MembraneBonds(membrane=m, kn=kn)
+	pressing = MembranePressure(membrane=m, pressure=P)
+	O.engines = engines(tier, [bonds, pressing])
+	O.dt = 1e-12  # nothing moves
 	O.step()
 	found = correction.terms(m, bonds, pressing, 0, HEIGHT)
 	assert abs(found["pressure_axial"]) < 1e-3 * P * math.pi * m.innerRadius**2  # a straight tube has no axial push
@@ -117,15 +99,13 @@ def test_termsOfACylinderPulledLengthwise(O):
 	assert low + high == pytest.approx(HEIGHT * (1 + strain), rel=1e-9) and low < 0 < HEIGHT < high
 
 
-def test_badInput(O):
-	import yade
-
+def test_badInput(O, tier):
 	m = makeMembrane()
-	bonds = yade.MembraneBonds(membrane=m, kn=500.0)
+	bonds = MembraneBonds(membrane=m, kn=500.0)
 	for call in (lambda: bonds.axialTension(0.0), lambda: bonds.radialShare(3)):
 		with pytest.raises(RuntimeError, match="fix: run a step first"):
 			call()
-	O.engines = [yade.ForceResetter(), bonds]
+	O.engines = engines(tier, [bonds])
 	O.step()
 	with pytest.raises(ValueError, match="MembraneBonds.axialTension: z"):
 		bonds.axialTension(float("nan"))

@@ -4,7 +4,8 @@
 import numpy as np
 import pytest
 import yade
-from compactScene import build, run, state
+from specimenScene import build
+from tiers import run, state
 
 
 def insert(O, **settings):

@@ -7,8 +7,8 @@ import subprocess
 import sys
 
 import pytest
+from contactScene import material
 from hexmembrane.platens import platen
-from platenScene import material
 from yade import Platen, Vector3
 
 
@@ -38,7 +38,7 @@ def test_sizesAreCheckedBeforeAnythingChanges(attribute, value):
 	),
 )
 def test_helperRefuses(O, change, part):
-	material(O)
+	material()
 	with pytest.raises(ValueError, match=part):
 		platen(**{"faceCentre": (0, 0, 0), "radius": 0.02, "height": 0.01, "facing": 1, **change})
 	assert len(O.bodies) == 0
@@ -50,7 +50,7 @@ def test_helperNeedsAMaterial(O):
 
 
 def test_helperPlacesTheFace(O):
-	material(O)
+	material()
 	below, above = platen((1, 2, 3), 0.02, 0.01, +1), platen((1, 2, 3), 0.02, 0.01, -1)
 	assert below.state.pos == Vector3(1, 2, 2.995) and above.state.pos == Vector3(1, 2, 3.005)
 	assert below.state.refPos == below.state.pos
@@ -65,12 +65,12 @@ def test_missingSizeEndsTheRunWithItsMessage():
 	here = os.path.dirname(os.path.abspath(__file__))
 	script = (
 		"import sys; sys.path[:0] = [%r, %r]\n"
-		"import conftest, yade, platenScene\n"
+		"import conftest, yade, contactScene\n"
 		"from yade import O\n"
-		"platenScene.material(O)\n"
+		"contactScene.material()\n"
 		"b = yade.Body(); b.shape = yade.Platen(radius=1); b.material = O.materials[0]; b.dynamic = False\n"
 		"O.bodies.append(b)\n"
-		"platenScene.engines(O)\n"
+		"O.engines = contactScene.referenceEngines()\n"
 		"O.step()\n"
 	) % (os.path.dirname(here), here)
 	run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=300)

@@ -4,8 +4,10 @@
 import math
 
 import numpy as np
-
+import yade
 from hexmembrane.platens import platen
+from tiers import engines
+from yade import O, utils
 
 RADIUS, HEIGHT = 0.02, 0.04
 
@@ -27,23 +29,26 @@ def build(
 	spin=0.0,
 	gain=0.0,
 	particleRadius=2e-3,
+	porosity=0.45,
+	springs=False,
+	pressureGain=0.0,
 ):
-	"""Fill YADE's empty scene; returns a dict of the engines by name, with 'loop' in the compact tier.
+	"""Fill YADE's empty scene; returns a dict of the inner engines by name.
 
 	:param tier: 'reference' or 'compact'. :param lateral: 'membrane' or 'wall'. :param swell: growth of the touching packing's grains, for overlaps.
 	:param spin: random velocities and spins of this size, for motion in every direction.
+	:param gain: of the servo beside the platens. :param pressureGain: of the pressure on the main body.
+	:param springs: stiffness of the grains' material as kn and ks, else as emod and kratio.
 	"""
-	import yade
-	from yade import O, utils
 
-	def material(label, mu, mur):
-		O.materials.append(yade.LinearMat(emod=1e8, kratio=3, friction=mu, rollingFriction=mur, density=2650, label=label))
+	def material(label, mu, mur, **stiffness):
+		O.materials.append(yade.LinearMat(friction=mu, rollingFriction=mur, density=2650, label=label, **(stiffness or dict(emod=1e8, kratio=3))))
 
-	material("grain", friction, rollingFriction)
+	material("grain", friction, rollingFriction, **(dict(kn=6e5, ks=2e5) if springs else {}))
 	material("platen", 0.3, rollingFriction)
 	material("membrane", membraneFriction, 0)
 	random = np.random.default_rng(seed)
-	packing = yade.CylinderPacking(radius=RADIUS, height=HEIGHT, radii=random.uniform(0.7, 1.3, grains).tolist(), porosity=0.45, seed=seed)
+	packing = yade.CylinderPacking(radius=RADIUS, height=HEIGHT, radii=random.uniform(0.7, 1.3, grains).tolist(), porosity=porosity, seed=seed)
 	packing.generate()
 	for centre, radius in zip(packing.centres, packing.sizes):
 		body = utils.sphere(tuple(centre), radius * swell, material="grain")
@@ -59,7 +64,7 @@ def build(
 		)
 		m.generate()
 		made["bonds"] = yade.MembraneBonds(membrane=m, young=2e6, thickness=5e-4, poisson=poisson)
-		made["pressure"] = yade.MembranePressure(membrane=m, pressure=pressure)
+		made["pressure"] = yade.MembranePressure(membrane=m, pressure=pressure, gain=pressureGain, iterPeriod=10)
 		made["servo"] = yade.MembraneRadialServo(membrane=m, pressure=pressure, gain=gain, iterPeriod=10)
 	else:
 		wall = yade.Body()
@@ -75,58 +80,15 @@ def build(
 		made["top"].mode, made["top"].velocity = "velocity", velocity
 	if lateral == "membrane":
 		made["oRings"] = yade.MembraneORings(membrane=m, mode="platens", bottomPlaten=bottom, topPlaten=top)
-	inner = list(made.values())
-	if tier == "compact":
-		made["loop"] = yade.CompactLoop(engines=inner, damping=damping, substeps=substeps)
-		O.engines = [yade.ForceResetter(), made["loop"]]
-	else:
-		O.engines = referenceEngines(inner, damping)
+	O.engines = engines(tier, made.values(), damping, substeps)
 	O.dt = 2e-6
 	return made
 
 
-def referenceEngines(inner, damping):
-	"""The reference tier's list round the same engines."""
-	import yade
-
-	return [
-		yade.ForceResetter(),
-		yade.InsertionSortCollider(
-			[yade.Bo1_Sphere_Aabb(), yade.Bo1_Platen_Aabb(), yade.Bo1_CylinderWall_Aabb()], verletDist=1e-4, avoidSelfInteractionMask=2
-		),
-		yade.InteractionLoop(
-			[
-				yade.Ig2_Sphere_Sphere_LinearScGeom(avoidGranularRatcheting=False),
-				yade.Ig2_Platen_Sphere_ScGeom(),
-				yade.Ig2_CylinderWall_Sphere_ScGeom(),
-			],
-			[yade.Ip2_LinearMat_LinearMat_LinearPhys()],
-			[yade.Law2_ScGeom_LinearPhys_Linear()],
-		),
-		*inner,
-		yade.NewtonIntegrator(damping=damping),
-	]
-
-
-def state():
-	"""Positions, velocities and spins of all bodies, one row a body."""
-	from yade import O
-
-	return np.array([tuple(b.state.pos) + tuple(b.state.vel) + tuple(b.state.angVel) for b in O.bodies])
-
-
-def forces():
-	"""Forces and torques of all bodies as of the last step, one row a body."""
-	from yade import O
-
-	return np.array([tuple(O.forces.f(b.id)) + tuple(O.forces.t(b.id)) for b in O.bodies])
-
-
-def run(steps):
-	"""That many steps in either tier; O.run's wait can lose an error, so the steps are counted."""
-	from yade import O
-
-	wanted = O.iter + steps
-	if steps:  # O.run(0) never ends
-		O.run(steps, True)
-	assert O.iter == wanted, "stopped at step %d of %d" % (O.iter, wanted)
+def bondGrains(strength, grains=150):
+	"""Bond the grains' contacts with each other in O.interactions (reference tier), `strength` N for the weakest, up to 2187 times that; their number."""
+	bonded = [i for i in O.interactions if i.isReal and max(i.id1, i.id2) < grains]
+	for i in bonded:
+		of = strength * 3 ** ((i.id1 + i.id2) % 8)
+		i.phys.bond(of, of)
+	return len(bonded)
