@@ -3,7 +3,10 @@
  *
  * YADE registers the classes of the plugins that lie in its own library folder once, at start, by Omega::buildDynlibDatabase, which is
  * private. A library loaded later has put its classes into the ClassFactory all the same; what is left is to make them known to Python
- * and to Omega's table of base classes (asked by the OpenGL renderer and by O.bodies' dispatchers for class names). That is done here. */
+ * and to Omega's table of base classes (asked by the OpenGL renderer and by O.bodies' dispatchers for class names). That is done here; a
+ * 3D view that is there already is told by LateView.cpp. */
+#include "LateView.hpp"
+
 #include <core/Omega.hpp>
 #include <lib/factory/ClassFactory.hpp>
 #include <lib/serialization/Serializable.hpp>
@@ -109,6 +112,7 @@ extern "C" __attribute__((visibility("default"))) PyObject* PyInit_libhexmembran
 		const Names names = classesUnknownTo(wrapper);
 		registerInPython(names, wrapper);
 		registerInOmega(names);
+		hexmembrane::registerInView(names);
 		publish(names, wrapper);
 		py::object module{py::handle<>(PyModule_Create(&definition))};
 		py::list classes;

@@ -1,10 +1,11 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "CylinderWall.hpp"
 
+#include "compact/BoundaryRegistry.hpp"
+
 #include <core/Aabb.hpp>
 #include <core/Scene.hpp>
 #include "kernels/base/Check.hpp"
-#include "kernels/boundary/CylinderContact.hpp"
 
 namespace yade {
 
@@ -15,6 +16,17 @@ void CylinderWall::requireComplete() const
 	hexmembrane::requirePositive("CylinderWall.radius", radius, "m");
 	hexmembrane::requirePositive("CylinderWall.height", height, "m");
 }
+
+hexmembrane::CylinderBoundary CylinderWall::boundary(const State& state) const { return {state.pos, radius, 0.5 * height}; }
+
+namespace {
+
+const CompactBoundary<CylinderWall> cylinderWallInCompactTier([](const CylinderWall& wall, const State& state) {
+	wall.requireComplete();
+	return hexmembrane::boundaryShape(wall.boundary(state));
+});
+
+} // namespace
 
 void Bo1_CylinderWall_Aabb::go(const shared_ptr<Shape>& shape, shared_ptr<Bound>& bound, const Se3r& se3, const Body*)
 {
@@ -34,18 +46,14 @@ bool Ig2_CylinderWall_Sphere_ScGeom::go(const shared_ptr<Shape>& shape, const sh
 {
 	const CylinderWall& wall = static_cast<const CylinderWall&>(*shape);
 	const Real radius = static_cast<const Sphere&>(*sphere).radius;
-	const Vector3r centre = sphereState.pos + shift2;
-	const hexmembrane::CylinderContact found = hexmembrane::cylinderContact(wallState.pos, wall.radius, centre, radius);
-	const bool beside = math::abs(centre[2] - wallState.pos[2]) <= 0.5 * wall.height && found.normal != Vector3r::Zero();
-	if (!contact->isReal() && !force && (!beside || found.penetration < 0)) return false;
+	const hexmembrane::BoundaryTouch touch = wall.boundary(wallState).touch({sphereState.pos + shift2, radius});
+	if (!contact->isReal() && !force && touch.overlap < 0) return false;
 
 	const bool isNew = !contact->geom;
 	if (isNew) contact->geom = shared_ptr<ScGeom>(new ScGeom);
-	// a sphere that has left over the wall's end is out of contact: the law sees a gap and ends it
-	const Real penetration = beside ? found.penetration : -radius;
 	const bool avoidGranularRatcheting = false; // made for two round bodies
 	static_cast<ScGeom&>(*contact->geom)
-	        .doIg2Work(found.point, penetration, radius, radius, wallState, sphereState, scene, contact, found.normal, shift2, isNew,
+	        .doIg2Work(touch.point, touch.overlap, radius, radius, wallState, sphereState, scene, contact, touch.normal, shift2, isNew,
 	                   avoidGranularRatcheting);
 	return true;
 }

@@ -1,6 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include "kernels/boundary/CylinderContact.hpp"
+
 #include <core/Dispatching.hpp>
 #include <core/Shape.hpp>
 #include <pkg/common/Sphere.hpp>
@@ -15,6 +17,8 @@ public:
 
 	//! \throws std::invalid_argument unless both sizes were given and are positive
 	void requireComplete() const;
+	//! What spheres meet, whose centres are beside the wall; one beyond an end has a gap of its radius.
+	hexmembrane::CylinderBoundary boundary(const State& state) const;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(CylinderWall,Shape,"Rigid lateral wall: the inside of an upright cylinder as one body with exact contact to spheres (nothing is tessellated). :yref:`Body` position is the centre of the axis; the axis is vertical whatever the body's orientation. It has no thickness, no ends, and no outside: a sphere whose centre is above or below it meets nothing.\n\nContacts need :yref:`Bo1_CylinderWall_Aabb` and :yref:`Ig2_CylinderWall_Sphere_ScGeom`; :yref:`RadialWallServo` moves the radius. The body itself does not move: give it ``dynamic=False``.\n\n.. code-block:: python\n\n\twall=Body()\n\twall.shape=CylinderWall(radius=.02,height=.1); wall.state.pos=(0,0,.04); wall.material=O.materials[0]; wall.dynamic=False\n\tO.bodies.append(wall)\n\nA missing size (NaN) is an error in the first step.",

@@ -1,6 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "Platen.hpp"
 
+#include "compact/BoundaryRegistry.hpp"
+
 #include <core/Aabb.hpp>
 #include <core/Scene.hpp>
 #include "kernels/base/Check.hpp"
@@ -35,6 +37,11 @@ void Platen::postLoad(Platen&)
 }
 
 namespace {
+
+const CompactBoundary<Platen> platenInCompactTier([](const Platen& platen, const State& state) {
+	platen.requireComplete();
+	return hexmembrane::boundaryShape(hexmembrane::PlatenBoundary{platen.solid(state.se3)});
+});
 
 // Whether the axis may have another direction by the time of the collider's next run.
 bool mayTip(const State& state, const Vector3r& axis)

@@ -1,14 +1,13 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "PlatenDrive.hpp"
 
-#include <core/Interaction.hpp>
+#include "base/RequireFunctors.hpp"
+
 #include <core/Scene.hpp>
 #include "kernels/base/Check.hpp"
 #include "kernels/base/WeightedMedian.hpp"
 #include "kernels/boundary/OverlappingRamps.hpp"
 #include "kernels/boundary/PlatenServo.hpp"
-#include <pkg/common/NormShearPhys.hpp>
-#include <pkg/dem/NewtonIntegrator.hpp>
 
 #include <stdexcept>
 
@@ -64,20 +63,10 @@ void PlatenDrive::requireSettings() const
 	if (!math::isnan(timeLimit)) hexmembrane::requirePositive("PlatenDrive.timeLimit", timeLimit, "s");
 }
 
-void PlatenDrive::requireOrder() const
-{
-	bool integrated = false;
-	for (const auto& engine : scene->engines) {
-		if (dynamic_cast<const NewtonIntegrator*>(engine.get())) integrated = true;
-		if (engine.get() == this && integrated)
-			stop("PlatenDrive: it comes after NewtonIntegrator in O.engines; fix: put it before, after the engines that add forces");
-	}
-}
-
 Real PlatenDrive::target(const Platen& shape) const
 {
 	if (mode == "velocity") return velocity;
-	return stress * (math::isnan(area) ? Mathr::PI * shape.radius * shape.radius : area);
+	return stress * (math::isnan(area) ? M_PI * shape.radius * shape.radius : area);
 }
 
 void PlatenDrive::record(const State& state, Real newForce, const Vector3r& unit)
@@ -103,7 +92,7 @@ Real PlatenDrive::approachVelocity() const
 	for (const auto& body : *scene->bodies) {
 		const auto* sphere = body ? dynamic_cast<const Sphere*>(body->shape.get()) : nullptr;
 		if (!sphere || !body->isDynamic()) continue;
-		const Real volume = 4. / 3 * Mathr::PI * math::pow(sphere->radius, 3);
+		const Real volume = 4. / 3 * M_PI * math::pow(sphere->radius, 3);
 		densities.emplace_back(body->state->mass / volume, volume);
 	}
 	const Real density = hexmembrane::weightedMedian(std::move(densities));
@@ -114,7 +103,6 @@ Real PlatenDrive::approachVelocity() const
 
 void PlatenDrive::beginPhase(Real newTarget, const State& state, const Vector3r& unit)
 {
-	requireOrder();
 	phaseApproach = mode == "stress" ? approachVelocity() : NaN;
 	phaseMode = mode;
 	phaseDirection = direction;
@@ -135,27 +123,6 @@ void PlatenDrive::changeTarget(Real newTarget)
 	phaseTarget = newTarget;
 	changeTime = 0;
 	phaseSettled = false;
-}
-
-Real PlatenDrive::sumStiffness(const Vector3r& unit) const
-{
-	Real sum = 0;
-	for (const auto& other : Body::byId(platen, scene)->intrs) {
-		const Interaction& contact = *other.second;
-		if (!contact.isReal()) continue;
-		if (!math::isnan(contactStiffness)) return contactStiffness;
-		const auto* geom = dynamic_cast<const GenericSpheresContact*>(contact.geom.get());
-		const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
-		if (!geom || !phys)
-			hexmembrane::reject("PlatenDrive.contactStiffness", contactStiffness,
-			                    "contacts of " + contact.phys->getClassName() + " do not tell their stiffness",
-			                    "give the stiffness of all contacts together in N/m");
-		const auto* shear = dynamic_cast<const NormShearPhys*>(phys);
-		const Real along = geom->normal.dot(unit);
-		const Real squared = along * along;
-		sum += phys->kn * squared + (shear ? shear->ks * (1 - squared) : 0);
-	}
-	return sum;
 }
 
 Real PlatenDrive::servoStep(Real velocityNow)
@@ -181,14 +148,25 @@ void PlatenDrive::requireReached(Real newTarget)
 	     std::to_string(scene->iter) + "; fix: is there a specimen in its way? give a longer timeLimit, or a larger maxVelocity");
 }
 
-void PlatenDrive::advance(const Vector3r& forceOnPlaten, const std::function<Real(const Vector3r&)>& contactStiffnessAlong)
+void PlatenDrive::requireReferenceScene() const { requireFunctors(*scene, "Platen", "PlatenDrive"); }
+
+void PlatenDrive::prepare()
+{
+	requirePlaten();
+	requireSettings();
+}
+
+void PlatenDrive::action() { stepOverBodies(*this); }
+
+void PlatenDrive::step(StepView& view)
 {
 	State& state = requirePlaten();
 	requireSettings();
 	const Vector3r unit = direction.normalized();
 	const Real newTarget = target(static_cast<const Platen&>(*Body::byId(platen, scene)->shape));
+	const ContactSums met = view.contacts(platen);
 
-	record(state, 0 - forceOnPlaten.dot(unit), unit); // 0 - x: no force is 0, not -0
+	record(state, 0 - met.force.dot(unit), unit); // 0 - x: no force is 0, not -0
 	const bool changed = newTarget != phaseTarget;
 	if (mode != phaseMode || direction != phaseDirection || (changed && ramps.empty()))
 		beginPhase(newTarget, state, unit);
@@ -199,7 +177,7 @@ void PlatenDrive::advance(const Vector3r& forceOnPlaten, const std::function<Rea
 	const Real ahead = 0.5 * scene->dt;
 	if (mode == "stress") {
 		requireReached(newTarget);
-		stiffness = contactStiffnessAlong(unit);
+		stiffness = math::isnan(contactStiffness) ? view.stiffness(platen, unit) : (met.count > 0 ? contactStiffness : 0);
 		const Real next = servoStep(state.vel.dot(unit)), weight = hexmembrane::rampWeight(phaseTime + ahead, phaseDuration);
 		state.vel = (weight * next + (1 - weight) * phaseVelocity) * unit;
 	} else {
@@ -212,13 +190,6 @@ void PlatenDrive::advance(const Vector3r& forceOnPlaten, const std::function<Rea
 	phaseTime += scene->dt;
 	changeTime += scene->dt;
 	hexmembrane::advanceRamps(ramps, scene->dt);
-}
-
-void PlatenDrive::action()
-{
-	requirePlaten();
-	scene->forces.sync();
-	advance(scene->forces.getForce(platen), [this](const Vector3r& unit) { return sumStiffness(unit); });
 }
 
 } // namespace yade

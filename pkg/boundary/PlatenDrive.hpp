@@ -3,21 +3,23 @@
 
 #include "Platen.hpp"
 
+#include "compact/Stepped.hpp"
+
 #include <core/Body.hpp>
 #include <core/GlobalEngine.hpp>
 
-#include <functional>
 #include <string>
 
 namespace yade {
 
-class PlatenDrive : public GlobalEngine {
+class PlatenDrive : public GlobalEngine, public Stepped {
 public:
 	void action() override;
 
-	//! A step with this force on the platen and the stiffness of its contacts along a unit vector: sets the velocity of the platen's body, which whoever
-	//! integrates then moves.
-	void advance(const Vector3r& forceOnPlaten, const std::function<Real(const Vector3r&)>& contactStiffnessAlong);
+	void prepare() override;
+	void step(StepView& view) override;
+	bool mayBeSeveral() const override { return true; }
+	void requireReferenceScene() const override;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(PlatenDrive,GlobalEngine,"Moves one :yref:`Platen` along a fixed direction, at a given velocity or so that it carries a given stress, and records what it meets. All degrees of freedom of the body are blocked and its velocity is set every step, so :yref:`NewtonIntegrator` only advances its position.\n\nPlace: after every engine that adds forces, before :yref:`NewtonIntegrator` (the other order is an error).\n\n**Velocity.** $v(t)=v_0+(v_1-v_0)\\frac12(1-\\cos\\pi t/T)$ from the velocity $v_0$ of that moment to :yref:`velocity<PlatenDrive.velocity>` $v_1$ within $T=$ :yref:`rampTime<PlatenDrive.rampTime>`. A new velocity, stress, mode, area or direction starts a new ramp, from the present velocity. A velocity, stress or area that changes while a ramp runs adds a ramp of its own from that moment, and ramps that run together add up: the velocity has no jump, and one that is set every step is followed $T/2$ behind.\n\n**Stress.** The platen is a body of mass $m$ on a dashpot $c$, pushed by $\\sigma A$ and pushed back by the specimen: $m\\dot v=\\sigma A-F-cv$. With $K$ the stiffness of its contacts along the direction (summed every step) and $\\Delta t$ the step, $m=4K\\Delta t^2$ and $c=2\\zeta\\sqrt{Km}$, which is stable for any stiffness; and $v\\le 0.01\\sigma A/(K\\Delta t)$, so that at most 1 % of the target arrives in a step. While nothing touches it the platen advances at :yref:`maxVelocity<PlatenDrive.maxVelocity>`. Within :yref:`rampTime<PlatenDrive.rampTime>` the force goes from that of the moment to $\\sigma A$ and the velocity from that of the moment to the servo's. A platen that has to keep moving carries $cv=4\\zeta K\\Delta t\\,v$ less than the target; at rest the error vanishes.\n\n**Records**, positive when the specimen is compressed: :yref:`force<PlatenDrive.force>`, :yref:`displacement<PlatenDrive.displacement>`, :yref:`work<PlatenDrive.work>`. In the way of leapfrog, positions and contact forces belong to the same instant, so $W\\mathrel{+}=\\frac12(F_n+F_{n+1})(x_{n+1}-x_n)$. With :yref:`O.trackEnergy<Omega.trackEnergy>` the work is booked as ``platenWork``, negative like YADE's other work from outside. The state is saved: a run that is saved and loaded goes on as if it had not been.\n\nErrors in the first step that has them: a missing or erased body, one that is no Platen or a clump's, an unknown mode, values that are missing, not finite or have the wrong sign. Example::\n\n\tPlatenDrive(platen=top,direction=(0,0,-1),mode='stress',stress=100e3,rampTime=.01)",
@@ -61,13 +63,11 @@ public:
 private:
 	State& requirePlaten() const;
 	void requireSettings() const;
-	void requireOrder() const;
 	Real target(const Platen& shape) const;
 	void record(const State& state, Real newForce, const Vector3r& unit);
 	void beginPhase(Real newTarget, const State& state, const Vector3r& unit);
 	void changeTarget(Real newTarget);
 	Real approachVelocity() const;
-	Real sumStiffness(const Vector3r& unit) const;
 	Real servoStep(Real velocityNow);
 	void requireReached(Real newTarget);
 };

@@ -3,11 +3,11 @@
 
 #include "Platen.hpp"
 
-#include <core/Interaction.hpp>
+#include "base/RequireFunctors.hpp"
+
 #include <core/Scene.hpp>
 #include "kernels/base/Check.hpp"
 #include "kernels/boundary/PlatenServo.hpp"
-#include <pkg/common/NormShearPhys.hpp>
 
 namespace yade {
 
@@ -61,22 +61,6 @@ Real RadialWallServo::specimenHeight() const
 	return gap;
 }
 
-void RadialWallServo::measure(Real& force, Real& sum) const
-{
-	force = sum = 0;
-	for (const auto& entry : (*scene->bodies)[wall]->intrs) {
-		const Interaction& contact = *entry.second;
-		if (!contact.isReal()) continue;
-		const auto* geom = dynamic_cast<const GenericSpheresContact*>(contact.geom.get());
-		const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
-		if (!geom || !phys)
-			throw std::runtime_error("RadialWallServo.wall: contacts of " + contact.phys->getClassName() +
-			                         " do not tell their stiffness; fix: a contact law whose IPhys derives from NormPhys");
-		force += phys->normalForce.dot(geom->normal);
-		sum += phys->kn;
-	}
-}
-
 void RadialWallServo::requireReached(Real target)
 {
 	settled = math::abs(radialStress - stress) <= tolerance * stress;
@@ -94,19 +78,26 @@ void RadialWallServo::requireReached(Real target)
 	phaseTime += scene->dt;
 }
 
-void RadialWallServo::action()
+void RadialWallServo::requireReferenceScene() const { requireFunctors(*scene, "CylinderWall", "RadialWallServo"); }
+
+void RadialWallServo::prepare()
 {
 	requireWall();
-	Real force, sum;
-	measure(force, sum);
-	advance(force, sum);
+	requireSettings();
 }
 
-void RadialWallServo::advance(Real force, Real contactStiffness)
+void RadialWallServo::action() { stepOverBodies(*this); }
+
+void RadialWallServo::step(StepView& view)
 {
 	CylinderWall& shape = requireWall();
 	requireSettings();
-	stiffness = contactStiffness;
+	const ContactSums met = view.contacts(wall);
+	if (!met.silent.empty())
+		throw std::runtime_error("RadialWallServo.wall: contacts of " + met.silent +
+		                         " do not tell their stiffness; fix: a contact law whose IPhys derives from NormPhys");
+	const Real force = met.normalForce;
+	stiffness = met.normalStiffness;
 	const Real area = 2 * M_PI * shape.radius * specimenHeight();
 	radialStress = force / area;
 	// A gap in the steps (the engine was dead, or O.resetTime) is nobody's work.

@@ -3,24 +3,26 @@
 
 #include "CylinderWall.hpp"
 
+#include "compact/Stepped.hpp"
+
 #include <core/Body.hpp>
 #include <core/GlobalEngine.hpp>
 
 namespace yade {
 
 /*! Holds the mean radial stress on a CylinderWall by moving its radius. */
-class RadialWallServo : public GlobalEngine {
+class RadialWallServo : public GlobalEngine, public Stepped {
 public:
 	void action() override;
 
-	//! A step with this sum of the normal forces on the wall and of the stiffnesses of its contacts: moves the radius.
-	void advance(Real force, Real contactStiffness);
+	void prepare() override;
+	void step(StepView& view) override;
+	void requireReferenceScene() const override;
 
 private:
 	CylinderWall& requireWall() const;
 	Real specimenHeight() const;
 	void requireSettings() const;
-	void measure(Real& force, Real& stiffness) const;
 	void requireReached(Real target);
 
 	// clang-format off

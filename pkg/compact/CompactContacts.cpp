@@ -3,186 +3,155 @@
 
 #include "contact/LinearContact.hpp"
 #include "kernels/compact/CriticalStep.hpp"
-#include "membrane/GatherBodies.hpp"
 
 #include <core/Scene.hpp>
 #include <pkg/dem/ScGeom.hpp>
 
 #include <boost/make_shared.hpp>
 
-#include <numeric>
+#include <cstring>
 
 namespace yade {
 
-using hexmembrane::ContactMemory;
+using hexmembrane::Contact;
 
-// Calls visit(id1, id2, memory, bits) for every contact that remembers something.
-template <typename Visit>
-void CompactLoop::forEachContact(Visit&& visit) const
+namespace {
+
+// A contact's saved numbers: what the model remembers and the strengths of its bond, as they lie in memory, named by their fields.
+struct SavedContact {
+	hexmembrane::ContactMemory<double> memory;
+	hexmembrane::BondStrengths strengths;
+
+	static constexpr size_t numbers = (sizeof(memory) + sizeof(strengths)) / sizeof(double);
+	static string fields() { return string(decltype(memory)::fields) + " " + decltype(strengths)::fields; }
+};
+static_assert(sizeof(SavedContact) == SavedContact::numbers * sizeof(double), "a saved contact is its numbers");
+
+} // namespace
+
+void CompactLoop::requireRun(const char* what) const
 {
-	flat.contacts.forEachTouching([&](int i, int j, const ContactMemory& memory, unsigned char bits) { visit(flat.id[i], flat.id[j], memory, bits); });
-	for (size_t b = 0; b < flat.boundaryContacts.size(); ++b)
-		flat.boundaryContacts[b].forEachTouching(
-		        [&](int i, const ContactMemory& memory, unsigned char bits) { visit(boundaryIds[b], flat.id[i], memory, bits); });
+	if (!state) throw std::runtime_error(string("CompactLoop.") + what + ": nothing computed yet; fix: run a step first");
 }
 
-void CompactLoop::forgetStored()
+vector<KeptContact> CompactLoop::contactsSoFar() const
 {
-	contactIds.clear();
-	contactBits.clear();
-	contactShear.clear();
-	contactMoment.clear();
-	contactNormal.clear();
-	contactTensile.clear();
-	contactStrength.clear();
-}
-
-void CompactLoop::storeContacts()
-{
-	order.assign(flat.id.begin(), flat.id.begin() + flat.grains());
-	listedCentres = flat.listed;
-	listedBoundaryCentres.clear();
-	listedBoundaryRadii.clear();
-	for (const auto& boundary : flat.listedBoundaries) {
-		listedBoundaryCentres.push_back(boundary.solid.centre);
-		listedBoundaryRadii.push_back(boundary.solid.radius);
-	}
-	travelled = flat.travelled;
-	forgetStored();
-	forEachContact([&](int a, int b, const ContactMemory& memory, unsigned char bits) {
-		contactIds.emplace_back(a, b);
-		contactBits.push_back(bits);
-		contactShear.push_back(memory.shear);
-		contactMoment.push_back(memory.moment);
-		contactNormal.push_back(memory.normal);
-		contactTensile.push_back(memory.law.tensileStrength);
-		contactStrength.push_back(memory.law.shearStrength);
-	});
+	vector<KeptContact> kept;
+	if (state) state->forEachContact([&](const KeptContact& contact) { kept.push_back(contact); });
+	return kept;
 }
 
 void CompactLoop::preSave(CompactLoop&)
 {
-	if (collected) storeContacts();
+	if (!state) return; // what was loaded is still there
+	const hexmembrane::SphereAssembly& spheres = state->spheres;
+	order.assign(spheres.id.begin(), spheres.id.begin() + spheres.grains());
+	listedCentres = spheres.listed;
+	listedShapes.clear();
+	for (const auto& shape : spheres.listedShapes)
+		for (const Real number : shape->numbers()) listedShapes.push_back(number);
+	travelled = spheres.travelled;
+	contactFields = SavedContact::fields();
+	contactIds.clear();
+	contactBits.clear();
+	contactNumbers.clear();
+	state->forEachContact([&](const KeptContact& kept) {
+		contactIds.emplace_back(kept.id1, kept.id2);
+		contactBits.push_back(kept.contact.bits);
+		const SavedContact saved{kept.contact.memory, kept.contact.strengths()};
+		Real numbers[SavedContact::numbers];
+		std::memcpy(numbers, static_cast<const void*>(&saved), sizeof saved);
+		contactNumbers.insert(contactNumbers.end(), numbers, numbers + SavedContact::numbers);
+	});
 }
 
-// The lists as they were when the state was saved, from the positions that they had been made from.
-void CompactLoop::continueLists()
+vector<KeptContact> CompactLoop::savedContacts() const
 {
-	flat.listed = listedCentres;
-	flat.listedBoundaries = flat.boundaries;
-	for (size_t b = 0; b < boundaryIds.size(); ++b) {
-		flat.listedBoundaries[b].solid.centre = listedBoundaryCentres[b];
-		flat.listedBoundaries[b].solid.radius = listedBoundaryRadii[b];
-	}
-	flat.travelled = travelled;
-	vector<int> same(flat.spheres());
-	std::iota(same.begin(), same.end(), 0);
-	flat.buildLists(same);
-}
-
-void CompactLoop::putContact(Body::id_t a, Body::id_t b, ContactMemory memory, unsigned char bits)
-{
-	const auto index = [&](Body::id_t id) { return static_cast<size_t>(id) < sphereAt.size() ? sphereAt[id] : -1; };
-	const auto boundary = std::find(boundaryIds.begin(), boundaryIds.end(), a);
-	const int i = index(a), j = index(b);
-	bool known = false;
-	if (boundary != boundaryIds.end()) {
-		auto& contacts = flat.boundaryContacts[boundary - boundaryIds.begin()];
-		if (j >= 0) {
-			const auto law = hexmembrane::boundaryLaw(flat.materialOf(flat.boundaries[boundary - boundaryIds.begin()].material),
-			                                          flat.materialOf(flat.material[j]), flat.places[j].radius);
-			memory.law = {law.kn, law.ks, law.friction, law.kr, law.rollingArm, memory.law.tensileStrength, memory.law.shearStrength};
-			known = contacts.restore(j, memory, bits);
-		}
-	} else if (i >= 0 && j >= 0) {
-		const auto law = flat.lawOf(i, j);
-		memory.law = {law.kn, law.ks, law.friction, law.kr, law.rollingArm, memory.law.tensileStrength, memory.law.shearStrength};
-		known = flat.contacts.restore(i, j, memory, bits);
-		if (!known && hexmembrane::normalOnly(law)) { // with the membrane: has nothing to remember, and no place to do so
-			if (bits & hexmembrane::contactBonded)
-				throw std::runtime_error(
-				        "CompactLoop: bodies " + std::to_string(a) + " and " + std::to_string(b) +
-				        " are bonded without friction, grain and membrane; fix: bonds among grains only, or the reference tier");
-			known = true;
-		}
-	}
-	if (!known && (bits & hexmembrane::contactBonded))
-		throw std::runtime_error("CompactLoop: the bond of bodies " + std::to_string(a) + " and " + std::to_string(b) +
-		                         " reaches further than the neighbour lists; fix: a larger CompactLoop.skin, or the reference tier");
-}
-
-void CompactLoop::indexSpheres()
-{
-	sphereAt.assign(scene->bodies->size(), -1);
-	for (int i = 0; i < flat.spheres(); ++i) sphereAt[flat.id[i]] = i;
-}
-
-void CompactLoop::restoreContacts()
-{
-	indexSpheres();
+	if (contactFields != SavedContact::fields())
+		throw std::runtime_error("CompactLoop: the saved contacts have the fields '" + contactFields + "', this version has '" +
+		                         SavedContact::fields() + "'; fix: go on with the version that saved the state, or start anew");
+	if (contactBits.size() != contactIds.size() || contactNumbers.size() != SavedContact::numbers * contactIds.size())
+		throw std::runtime_error("CompactLoop: the saved contacts are not whole (" + std::to_string(contactIds.size()) + " contacts, " +
+		                         std::to_string(contactNumbers.size()) + " numbers); fix: load another saved state");
+	vector<KeptContact> kept;
 	for (size_t c = 0; c < contactIds.size(); ++c) {
-		ContactMemory memory{contactShear[c], contactMoment[c], contactNormal[c], {}};
-		memory.law.tensileStrength = contactTensile[c];
-		memory.law.shearStrength = contactStrength[c];
-		putContact(contactIds[c][0], contactIds[c][1], memory, static_cast<unsigned char>(contactBits[c]));
+		SavedContact saved;
+		std::memcpy(static_cast<void*>(&saved), contactNumbers.data() + SavedContact::numbers * c, sizeof saved);
+		kept.push_back({contactIds[c][0], contactIds[c][1], {saved.memory, {}, static_cast<unsigned char>(contactBits[c])}});
+		kept.back().contact.law.tensileStrength = saved.strengths.tension;
+		kept.back().contact.law.shearStrength = saved.strengths.shear;
 	}
-	forgetStored();
+	return kept;
+}
+
+// The lists as they were when the state was saved, from the positions that they had been made from: sums over contacts keep their bits.
+bool CompactLoop::continueLists(CompactState& next) const
+{
+	hexmembrane::SphereAssembly& spheres = next.spheres;
+	size_t at = 0;
+	vector<std::shared_ptr<const hexmembrane::BoundaryShape>> shapes;
+	for (const auto& boundary : spheres.boundaries) {
+		const size_t count = boundary.shape->numbers().size();
+		if (at + count > listedShapes.size()) return false;
+		shapes.push_back(boundary.shape->from({listedShapes.begin() + at, listedShapes.begin() + at + count}));
+		at += count;
+	}
+	if (at != listedShapes.size() || listedCentres.size() != static_cast<size_t>(spheres.spheres()) || !next.takeOrder(order)) return false;
+	spheres.continueLists(listedCentres, shapes, travelled);
+	return true;
 }
 
 // What the reference tier left: contacts go on with their forces and moments.
-void CompactLoop::importInteractions()
+vector<KeptContact> CompactLoop::interactionContacts() const
 {
-	indexSpheres();
-	for (const auto& contact : *scene->interactions) {
-		if (!contact->isReal()) continue;
-		const auto* phys = dynamic_cast<const LinearPhys*>(contact->phys.get());
-		const auto* geom = dynamic_cast<const ScGeom*>(contact->geom.get());
+	vector<KeptContact> found;
+	for (const auto& interaction : *scene->interactions) {
+		if (!interaction->isReal()) continue;
+		const auto* phys = dynamic_cast<const LinearPhys*>(interaction->phys.get());
+		const auto* geom = dynamic_cast<const ScGeom*>(interaction->geom.get());
 		if (!phys || !geom)
-			throw std::runtime_error("CompactLoop: the contact of bodies " + std::to_string(contact->getId1()) + " and " +
-			                         std::to_string(contact->getId2()) + " was made by another law (" + contact->phys->getClassName() +
+			throw std::runtime_error("CompactLoop: the contact of bodies " + std::to_string(interaction->getId1()) + " and " +
+			                         std::to_string(interaction->getId2()) + " was made by another law (" + interaction->phys->getClassName() +
 			                         "); fix: LinearMat and its law in the reference tier, or O.interactions.clear()");
-		ContactMemory memory{phys->shearForce, phys->moment, geom->normal, {}};
-		memory.law.tensileStrength = phys->tensileStrength;
-		memory.law.shearStrength = phys->shearStrength;
 		const unsigned char bits = hexmembrane::contactTouching | (phys->bonded ? hexmembrane::contactBonded : 0);
-		putContact(contact->getId1(), contact->getId2(), memory, bits);
+		found.push_back({interaction->getId1(), interaction->getId2(), {phys->memory(geom->normal), phys->law(), bits}});
 	}
-	scene->interactions->clear();
+	return found;
 }
 
 // Positions and boundaries as they were when the forces of the last step were computed.
 CompactLoop::Instant CompactLoop::lastInstant() const
 {
-	Instant then{flat.places, flat.boundaries};
-	for (int i = 0; i < flat.spheres(); ++i) then.places[i].centre -= lastDt * flat.motions[i].velocity;
-	for (size_t b = 0; b < then.boundaries.size(); ++b) {
-		then.boundaries[b].solid.centre -= lastDt * flat.boundaries[b].velocity;
-		if (wallServo && boundaryIds[b] == wallServo->wall) then.boundaries[b].solid.radius += lastDt * wallServo->velocity;
-	}
+	Instant then{state->spheres.places, stepShapes.empty() ? state->spheres.shapes() : stepShapes};
+	for (int i = 0; i < state->spheres.spheres(); ++i) then.places[i].centre -= lastDt * state->spheres.motions[i].velocity;
 	return then;
+}
+
+vector<Vector3r> CompactLoop::contactForces(const HexMembrane& membrane) const
+{
+	if (state->sheet.membrane != &membrane)
+		throw std::runtime_error("CompactLoop: this membrane is not one that it steps; fix: MembraneBonds of this membrane in CompactLoop.engines");
+	return state->contactForces(lastInstant().places, stepShapes);
 }
 
 void CompactLoop::exportContacts()
 {
-	if (!collected) throw std::runtime_error("CompactLoop.exportContacts: nothing computed yet; fix: run a step first");
+	requireRun("exportContacts");
 	auto& interactions = *scene->interactions;
 	interactions.clear();
-	const auto write = [&](int a, int b, const hexmembrane::ContactLaw& law, bool spheres, Real u, const Vector3r& normal, const Vector3r& point, Real r1,
-	                       Real r2, const ContactMemory* memory, unsigned char bits) {
+	const hexmembrane::SphereAssembly& spheres = state->spheres;
+	const auto write = [&](Body::id_t a, Body::id_t b, const Contact& c, bool ofSpheres, const hexmembrane::BoundaryTouch& touch, Real r1, Real r2) {
 		auto geom = boost::make_shared<ScGeom>();
-		geom->normal = normal;
-		geom->contactPoint = point;
-		geom->penetrationDepth = u;
+		geom->normal = touch.normal;
+		geom->contactPoint = touch.point;
+		geom->penetrationDepth = touch.overlap;
 		geom->refR1 = geom->radius1 = r1;
 		geom->refR2 = geom->radius2 = r2;
 		auto phys = boost::make_shared<LinearPhys>();
-		phys->set(law, spheres);
-		phys->normalForce = law.kn * u * normal;
-		if (memory) {
-			phys->shearForce = memory->shear;
-			phys->moment = memory->moment;
-			if (bits & hexmembrane::contactBonded) phys->bond(law.tensileStrength, law.shearStrength);
-		}
+		phys->set(c.law, ofSpheres);
+		phys->normalForce = c.law.kn * touch.overlap * touch.normal;
+		phys->remember(c.memory);
+		if (c.bonded()) phys->bond(c.law.tensileStrength, c.law.shearStrength);
 		auto contact = boost::make_shared<Interaction>(a, b);
 		contact->geom = geom;
 		contact->phys = phys;
@@ -191,44 +160,38 @@ void CompactLoop::exportContacts()
 	};
 	const Instant then = lastInstant();
 	const auto& places = then.places;
-	const auto writeSpheres = [&](int i, int j, const hexmembrane::ContactLaw& law, const ContactMemory* memory, unsigned char bits) {
+	const auto writeSpheres = [&](int i, int j, const Contact& contact) {
 		const auto &a = places[i], &b = places[j];
 		const Vector3r branch = b.centre - a.centre;
 		const Real distance = branch.norm(), u = a.radius + b.radius - distance;
 		const Vector3r normal = branch / distance;
-		write(flat.id[i], flat.id[j], law, true, u, normal, a.centre + (a.radius - 0.5 * u) * normal, a.radius, b.radius, memory, bits);
+		write(spheres.id[i], spheres.id[j], contact, true, {u, normal, a.centre + (a.radius - 0.5 * u) * normal}, a.radius, b.radius);
 	};
-	flat.contacts.forEachTouching([&](int i, int j, const ContactMemory& memory, unsigned char bits) { writeSpheres(i, j, memory.law, &memory, bits); });
-	flat.smooth.forEachTouching(places, [&](int i, int j, Real, Real, const Vector3r&) { writeSpheres(i, j, flat.lawOf(i, j), nullptr, 0); });
-	for (size_t k = 0; k < then.boundaries.size(); ++k)
-		flat.boundaryContacts[k].forEachTouching([&](int i, const ContactMemory& memory, unsigned char bits) {
-			const auto touch = then.boundaries[k].touch(places[i]);
-			write(boundaryIds[k], flat.id[i], memory.law, false, touch.u, touch.normal, touch.point, places[i].radius, places[i].radius, &memory,
-			      bits);
+	spheres.contacts.forEachTouching(writeSpheres);
+	spheres.smooth.forEachTouching(places, [&](int i, int j, Real, Real, const Vector3r&) {
+		writeSpheres(i, j, {hexmembrane::noMemory(), spheres.lawOf(i, j), hexmembrane::contactTouching});
+	});
+	for (size_t b = 0; b < spheres.boundaryContacts.size(); ++b)
+		spheres.boundaryContacts[b].forEachTouching([&](int i, const Contact& contact) {
+			write(state->boundaryIds[b], spheres.id[i], contact, false, then.shapes[b]->touch(places[i]), places[i].radius, places[i].radius);
 		});
 	exported = true;
 }
 
 int CompactLoop::contactCount() const
 {
-	int count = 0;
-	forEachContact([&](int, int, const ContactMemory&, unsigned char) { ++count; });
-	flat.smooth.forEachTouching(lastInstant().places, [&](int, int, Real, Real, const Vector3r&) { ++count; });
+	requireRun("contactCount");
+	int count = static_cast<int>(contactsSoFar().size());
+	state->spheres.smooth.forEachTouching(lastInstant().places, [&](int, int, Real, Real, const Vector3r&) { ++count; });
 	return count;
 }
 
 Real CompactLoop::criticalTimeStep()
 {
-	if (!collected) throw std::runtime_error("CompactLoop.criticalTimeStep: nothing computed yet; fix: run a step first");
-	hexmembrane::CriticalStep step(flat);
-	if (bonds) {
-		const auto& x = bonds->bondKernel().position;
-		const auto tube = collectedMembrane->stencil();
-		for (const auto& pair : hexmembrane::bondList(tube)) {
-			const auto at = [&](int v) { return x.get(v / tube.perRing, v % tube.perRing); };
-			step.addBond(pair[0], pair[1], at(pair[1]) - at(pair[0]), bonds->springs().kn, bonds->springs().ks);
-		}
-	}
+	requireRun("criticalTimeStep");
+	hexmembrane::CriticalStep step(state->spheres);
+	for (Stepped* one : stepped)
+		one->forEachBond([&](int first, int second, const Vector3r& branch, Real kn, Real ks) { step.addBond(first, second, branch, kn, ks); });
 	return step.compute();
 }
 

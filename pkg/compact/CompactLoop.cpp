@@ -1,14 +1,15 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "CompactLoop.hpp"
 
-#include "kernels/base/Check.hpp"
-#include "kernels/membrane/RadialForce.hpp"
+#include "base/NamedFields.hpp"
 
 #include <core/Scene.hpp>
+#include <lib/pyutil/gil.hpp>
 
 namespace yade {
 
 YADE_PLUGIN((CompactLoop));
+CREATE_LOGGER(CompactLoop);
 
 namespace {
 
@@ -29,61 +30,114 @@ private:
 
 } // namespace
 
+/*! An instant as the engines see it: the arrays, and what engines have asked for in this step. */
+class CompactLoop::View : public StepView {
+public:
+	explicit View(CompactLoop& l) : loop(l), state(*l.state) {}
+
+	const hexmembrane::PaddedRings& positions(const HexMembrane&) override { return *state.sheet.position; }
+	void refresh(const Sheet&) override {} // the rows are where the particles are moved
+	void addForces(const HexMembrane&, const vector<RingRange>& rings, const hexmembrane::PaddedRings& force, const hexmembrane::PaddedRings* torque,
+	               WorkMeter* meter) override
+	{
+		for (const RingRange& range : rings) {
+			loop.terms.push_back({&force, range.first, range.last, meter != nullptr, {}});
+			loop.meters.push_back(meter);
+		}
+		if (torque) loop.torques.push_back(torque);
+	}
+	void grip(const HexMembrane&, const vector<std::pair<int, Vector3r>>& rings, WorkMeter& meter) override
+	{
+		for (const auto& [ring, velocity] : rings) {
+			loop.grips.push_back({ring, velocity, {}});
+			loop.gripMeters.push_back(&meter);
+		}
+	}
+	vector<Vector3r> contactForces(const HexMembrane&) override { return state.contactForces(state.spheres.places, state.spheres.shapes()); }
+	ContactSums contacts(Body::id_t boundary) override
+	{
+		const int b = require(boundary);
+		const hexmembrane::BoundaryLoad& load = state.spheres.onBoundary[b];
+		return {load.load.force, load.normalForce, load.normalStiffness, load.count, ""};
+	}
+	Real stiffness(Body::id_t boundary, const Vector3r& along) override { return state.spheres.boundaryContacts[require(boundary)].stiffness(along); }
+
+private:
+	int require(Body::id_t boundary) const
+	{
+		const int b = state.boundaryIndex(boundary);
+		if (b < 0) refuseBody(boundary, "is no boundary that the loop has read", "give the id of a Platen or CylinderWall body");
+		return b;
+	}
+
+	CompactLoop& loop;
+	CompactState& state;
+};
+
+// Labels are names in Python, as YADE makes them of the labels in O.engines; also of engines that have just been loaded.
+void CompactLoop::postLoad(CompactLoop&)
+{
+	const gilLock lock;
+	boost::python::object builtins = boost::python::import("builtins");
+	for (const auto& engine : engines)
+		if (engine && !engine->label.empty()) builtins.attr(engine->label.c_str()) = engine;
+}
+
+boost::python::list CompactLoop::contract()
+{
+	boost::python::list rows;
+	for (const ReadingRow& row : readingContract()) rows.append(boost::python::make_tuple(row.of, row.attribute, row.treatment, row.what));
+	return rows;
+}
+
+void CompactLoop::warnReaders()
+{
+	if (exportPeriod > 0 || warned) return;
+	for (const auto& engine : scene->engines)
+		if (engine->getClassName() == "VTKRecorder" && !engine->dead) {
+			LOG_WARN("CompactLoop: contacts are not in O.interactions, which VTKRecorder reads; fix: CompactLoop.exportPeriod = 1, or leave "
+			         "contacts out of its recorders");
+			warned = true;
+		}
+}
+
 void CompactLoop::prepareEngines()
 {
 	hexmembrane::requireNonNegative("CompactLoop.damping", damping, "1");
 	if (damping >= 1) hexmembrane::reject("CompactLoop.damping", damping, "takes all of every force that drives a motion", "a number below 1");
 	if (substeps < 1) hexmembrane::reject("CompactLoop.substeps", substeps, "must be at least 1", "100, say");
+	if (exportPeriod < 0) hexmembrane::reject("CompactLoop.exportPeriod", exportPeriod, "must not be negative", "0 for never, or a number of iterations");
 	if (!math::isnan(skin)) hexmembrane::requirePositive("CompactLoop.skin", skin, "m");
 	hexmembrane::requirePositive("O.dt", scene->dt, "s");
-	bonds = nullptr;
-	pressure = nullptr;
-	radialServo = nullptr;
-	oRings = nullptr;
-	wallServo = nullptr;
-	drives.clear();
-	const auto only = [](auto*& slot, auto* engine, const char* name) {
-		if (slot) throw std::runtime_error(string("CompactLoop.engines: has two ") + name + "; fix: one at most");
-		slot = engine;
-	};
+	requireCompactScene(*scene, engines);
+	warnReaders();
+	stepped.clear();
+	std::set<string> classes;
+	const HexMembrane* held = nullptr;
 	for (const auto& engine : engines) {
 		if (!engine) throw std::runtime_error("CompactLoop.engines: holds None; fix: give engines only");
 		if (engine->dead) continue;
-		engine->scene = scene;
-		if (auto* e = dynamic_cast<MembraneBonds*>(engine.get()))
-			only(bonds, e, "MembraneBonds");
-		else if (auto* e = dynamic_cast<MembranePressure*>(engine.get()))
-			only(pressure, e, "MembranePressure");
-		else if (auto* e = dynamic_cast<MembraneRadialServo*>(engine.get()))
-			only(radialServo, e, "MembraneRadialServo");
-		else if (auto* e = dynamic_cast<MembraneORings*>(engine.get()))
-			only(oRings, e, "MembraneORings");
-		else if (auto* e = dynamic_cast<RadialWallServo*>(engine.get()))
-			only(wallServo, e, "RadialWallServo");
-		else if (auto* e = dynamic_cast<PlatenDrive*>(engine.get()))
-			drives.push_back(e);
-		else
+		const string name = engine->getClassName();
+		auto* one = dynamic_cast<Stepped*>(engine.get());
+		if (!one)
 			throw std::runtime_error(
-			        "CompactLoop.engines: a " + engine->getClassName() +
+			        "CompactLoop.engines: a " + name +
 			        " cannot be stepped inside; fix: put it into O.engines, where it acts between iterations, or use the reference tier");
+		if (!classes.insert(name).second && !one->mayBeSeveral())
+			throw std::runtime_error("CompactLoop.engines: has two " + name + "; fix: one at most");
+		if (std::count(engines.begin(), engines.end(), engine) > 1)
+			throw std::runtime_error("CompactLoop.engines: has the same " + name + " twice; fix: leave one out");
+		engine->scene = scene;
+		one->prepare();
+		one->requireCompactScene();
+		if (one->sheet().membrane) held = one->sheet().membrane;
+		stepped.push_back(one);
 	}
-	if (!bonds && (pressure || radialServo || oRings))
-		throw std::runtime_error("CompactLoop.engines: a membrane's engine without MembraneBonds; fix: add the bonds, they hold the membrane");
-	if (!bonds) return;
-	bonds->prepare();
-	if (pressure) {
-		pressure->prepare();
-		if (pressure->membrane != bonds->membrane)
+	for (Stepped* one : stepped)
+		if (one->actsOn() && one->actsOn() != held)
 			throw std::runtime_error(
-			        "CompactLoop.engines: MembranePressure is for another membrane or for a mesh; fix: the membrane of MembraneBonds");
-	}
-	if (radialServo) {
-		radialServo->prepare();
-		if (radialServo->membrane != bonds->membrane)
-			throw std::runtime_error("CompactLoop.engines: MembraneRadialServo is for another membrane; fix: the membrane of MembraneBonds");
-	}
-	if (oRings && oRings->membrane != bonds->membrane)
-		throw std::runtime_error("CompactLoop.engines: MembraneORings is for another membrane; fix: the membrane of MembraneBonds");
+			        "CompactLoop.engines: " + dynamic_cast<Engine*>(one)->getClassName() +
+			        " acts on a membrane without MembraneBonds in the list; fix: add the bonds of that membrane, they hold it together");
 }
 
 long CompactLoop::stepsToDo() const
@@ -114,179 +168,126 @@ void CompactLoop::action()
 		throw;
 	}
 	giveScene();
+	++iterations;
+	if (exportPeriod > 0 && iterations % exportPeriod == 0) exportContacts();
 	if (!scene->trackEnergy) {
-		flat.sums = {};
-		flat.dampedWork = rows.dampedWork = 0;
+		state->spheres.sums = {};
+		state->spheres.dampedWork = state->motion.dampedWork = 0;
 	}
 }
 
 void CompactLoop::step(bool last)
 {
-	if (!flat.listsHold()) {
-		if (bonds) rows.giveVelocities(flat.motions.data() + flat.grains());
-		flat.makeLists();
+	hexmembrane::SphereAssembly& spheres = state->spheres;
+	if (!spheres.listsHold()) {
+		if (state->sheet.ids) state->motion.giveVelocities(state->velocity(), spheres.motions.data() + spheres.grains());
+		const int lost = spheres.nowhere();
+		if (lost >= 0) stopLost(lost);
+		spheres.makeLists();
 	}
-	flat.computeLoads(scene->dt, threads);
-	if (bonds) membraneForces();
-	const bool energies = scene->trackEnergy;
-	Real elastic = 0;
-	if (energies && last) {
-		elastic = flat.elasticEnergy();
-		if (bonds) bonds->bookEnergy();
-	}
-	driveBoundaries();
-	moveAll();
-	if (energies && last) bookEnergies(elastic);
-}
-
-void CompactLoop::membraneForces()
-{
-	const hexmembrane::PaddedRings& x = bonds->bondKernel().position;
-	bonds->computeForces();
+	spheres.computeLoads(scene->dt, threads);
+	if (last) stepShapes = spheres.shapes();
 	terms.clear();
-	if (pressure) {
-		hexmembrane::TubePressure& kernel = *pressure->membraneKernel();
-		hexmembrane::requireFinite("MembranePressure.pressure", pressure->pressure, "Pa");
-		pressure->closeLoop([this]() { return transmittedByGroup(3); });
-		kernel.compute(pressure->applied(), x);
-		terms.push_back({&kernel.force, kernel.firstRing(), kernel.lastRing()});
+	meters.clear();
+	grips.clear();
+	gripMeters.clear();
+	torques.clear();
+	View view(*this);
+	for (Stepped* one : stepped) one->step(view);
+	const bool energies = scene->trackEnergy && last;
+	Real elastic = 0;
+	if (energies) {
+		elastic = spheres.elasticEnergy();
+		for (Stepped* one : stepped) one->bookStored();
 	}
-	if (radialServo) {
-		radialServo->computeForces(x, [this]() { return transmittedByGroup(2); });
-		// the rings of group 2, below and above the main body
-		const auto& rings = radialServo->rows;
-		const int lower = static_cast<int>(rings.size()) / 2;
-		terms.push_back({&radialServo->force, rings.front(), rings[lower - 1]});
-		terms.push_back({&radialServo->force, rings[lower], rings.back()});
-	}
-}
-
-// As HexMembrane::transmittedPressure, from the arrays: what the particles press on others, inwards, over their rings' area.
-Real CompactLoop::transmittedByGroup(int group) const
-{
-	const auto tube = collectedMembrane->stencil();
-	const hexmembrane::PaddedRings& x = bonds->bondKernel().position;
-	Real force = 0, area = 0;
-	for (int k = 0; k < tube.rings; ++k) {
-		if (collectedMembrane->groupOfRing(k) != group) continue;
-		const Vector3r centre = hexmembrane::ringShape(tube, x, k).centre;
-		area += tube.perRing * hexmembrane::particleArea(tube, x, k, collectedMembrane->sphereRadius, hexmembrane::AreaRule::tributary);
-		for (int i = 0; i < tube.perRing; ++i) {
-			const int m = tube.at(k, i);
-			const Vector3r onParticle = flat.onParticle[m].force + flat.loads[flat.grains() + m].force;
-			force -= onParticle.dot(hexmembrane::towardAxis(x.get(k, i), centre));
-		}
-	}
-	return force / area;
-}
-
-void CompactLoop::driveBoundaries()
-{
-	for (PlatenDrive* drive : drives) {
-		const auto at = std::find(boundaryIds.begin(), boundaryIds.end(), drive->platen);
-		const size_t b = at - boundaryIds.begin();
-		if (at == boundaryIds.end()) {
-			drive->advance(Vector3r::Zero(), [](const Vector3r&) { return 0; }); // says what is wrong with it
-			continue;
-		}
-		drive->advance(flat.onBoundary[b].load.force, [&](const Vector3r& unit) { return flat.boundaryContacts[b].stiffness(unit); });
-	}
-	if (wallServo) {
-		const auto at = std::find(boundaryIds.begin(), boundaryIds.end(), wallServo->wall);
-		const size_t b = at - boundaryIds.begin();
-		if (at == boundaryIds.end())
-			wallServo->advance(0, 0);
-		else
-			wallServo->advance(flat.onBoundary[b].normalForce, flat.onBoundary[b].normalStiffness);
-	}
+	moveAll();
+	if (energies) bookEnergies(elastic);
 }
 
 void CompactLoop::moveAll()
 {
-	const Real dt = lastDt = scene->dt;
-	const bool energies = scene->trackEnergy;
-	const int lostGrain = flat.moveGrains(dt, damping, energies, threads);
-	if (lostGrain >= 0) stopLost(lostGrain);
-	if (bonds) {
-		if (oRings) std::tie(rows.below, rows.above) = oRings->velocities();
-		hexmembrane::BondForce& kernel = bonds->bondKernel();
-		const int grains = flat.grains();
-		const hexmembrane::MembraneMotion::Contacts contacts{flat.onParticle, flat.loads.data() + grains,  flat.loadedParticles(),
-		                                                     grains,          flat.places.data() + grains, flat.motions.data() + grains};
-		int lost = rows.move(dt, damping, 0.5 * flat.skin(), kernel.force, terms, contacts, kernel.position, energies, threads);
-		if (rotatingMembrane()) {
-			for (int k = 0; k < collectedMembrane->rings; ++k)
-				for (int a = 0; a < 3; ++a)
-					std::copy(rows.velocity.row(a, k), rows.velocity.row(a, k) + collectedMembrane->perRing, kernel.velocity.row(a, k));
-			for (int k = 0; k < collectedMembrane->rings; ++k) kernel.velocity.wrap(k);
-			const int lostSpin = rows.moveSpins(dt, damping, flat.inertia.back(), kernel.torque, flat.loads.data() + grains, kernel.spin,
-			                                    flat.motions.data() + grains, energies);
-			if (lost < 0) lost = lostSpin;
-		}
-		if (lost >= 0) stopLost(flat.id[grains + lost]);
-		flat.noteSpeed(rows.fastest, dt);
-		bookWorks();
-	}
-	// boundaries move as NewtonIntegrator moves blocked bodies: at the velocity that they were given
-	for (size_t b = 0; b < boundaryIds.size(); ++b) {
-		State& state = *(*scene->bodies)[boundaryIds[b]]->state;
-		if (state.blockedDOFs != State::DOF_ALL)
-			throw std::runtime_error("CompactLoop: boundary " + std::to_string(boundaryIds[b]) +
-			                         " is free to move; fix: dynamic=False, or give it a PlatenDrive");
-		state.se3.position += state.vel * dt;
-		const Real before = flat.boundaries[b].solid.radius;
-		flat.noteSpeed(state.vel.norm(), dt);
-		refreshBoundary(b);
-		flat.noteSpeed(std::abs(flat.boundaries[b].solid.radius - before) / dt, dt);
-	}
-	flat.endStep();
+	lastDt = scene->dt;
+	const int lost = state->spheres.moveGrains(lastDt, damping, scene->trackEnergy, threads);
+	if (lost >= 0) stopLost(lost);
+	if (state->sheet.ids) moveSheet();
+	moveBoundaries();
+	state->spheres.endStep();
 }
 
-// Works up to the present positions; the half that leads on from them waits for the next step.
-void CompactLoop::bookWorks()
+void CompactLoop::moveSheet()
 {
-	aheadWork.resize(3, 0.);
-	const auto book = [&](size_t slot, Real& work, Real before, Real after) {
-		work += aheadWork[slot] + before;
-		aheadWork[slot] = after;
-	};
-	size_t t = 0;
-	if (pressure) {
-		book(0, pressure->work, terms[0].before, terms[0].after);
-		++t;
+	hexmembrane::SphereAssembly& spheres = state->spheres;
+	const Sheet& sheet = state->sheet;
+	const int grains = spheres.grains();
+	const bool energies = scene->trackEnergy;
+	const hexmembrane::MembraneMotion::Contacts contacts{spheres.onParticle,
+	                                                     spheres.loads.data() + grains,
+	                                                     spheres.loadedParticles(),
+	                                                     grains,
+	                                                     spheres.places.data() + grains,
+	                                                     spheres.motions.data() + grains};
+	int lost = state->motion.move(lastDt, damping, 0.5 * spheres.skin(), terms, grips, contacts, *sheet.position, state->velocity(), energies, threads);
+	if (sheet.spin) {
+		const int lostSpin = state->motion.moveSpins(lastDt, damping, spheres.inertia.back(), torques, spheres.loads.data() + grains, *sheet.spin,
+		                                             spheres.motions.data() + grains, energies);
+		if (lost < 0) lost = lostSpin;
 	}
-	if (radialServo) book(1, radialServo->work, terms[t].before + terms[t + 1].before, terms[t].after + terms[t + 1].after);
-	if (oRings) book(2, oRings->work, rows.oRingBefore, rows.oRingAfter);
+	if (lost >= 0) stopLost(spheres.id[grains + lost]);
+	spheres.noteWay(state->motion.fastest * lastDt);
+	// works up to the present positions; a meter may have several terms
+	std::map<WorkMeter*, hexmembrane::MembraneMotion::HalfWorks> works;
+	const auto add = [&](WorkMeter* meter, const hexmembrane::MembraneMotion::HalfWorks& halves) {
+		if (!meter) return;
+		works[meter].before += halves.before;
+		works[meter].after += halves.after;
+	};
+	for (size_t t = 0; t < terms.size(); ++t) add(meters[t], terms[t].work);
+	for (size_t g = 0; g < grips.size(); ++g) add(gripMeters[g], grips[g].work);
+	for (const auto& [meter, halves] : works) meter->add(scene->iter, halves);
+}
+
+// As NewtonIntegrator moves blocked bodies: at the velocities that they were given.
+void CompactLoop::moveBoundaries()
+{
+	for (size_t b = 0; b < state->boundaryIds.size(); ++b) {
+		State& body = *(*scene->bodies)[state->boundaryIds[b]]->state;
+		body.se3.position += body.vel * lastDt;
+		const Real angle = body.angVel.norm() * lastDt;
+		if (angle > 0) {
+			body.se3.orientation = Quaternionr(AngleAxisr(angle, body.angVel.normalized())) * body.se3.orientation;
+			body.se3.orientation.normalize();
+		}
+		state->refreshBoundary(*scene, static_cast<int>(b));
+	}
 }
 
 void CompactLoop::bookEnergies(Real elastic)
 {
 	auto& energy = *scene->energy;
+	hexmembrane::SphereAssembly& spheres = state->spheres;
 	energy.add(elastic, "elastPotential", elasticIx, /*reset*/ true);
-	energy.add(flat.sums.slip, "plastDissip", slipIx);
-	energy.add(flat.sums.roll, "rollDissip", rollIx);
-	energy.add(flat.sums.bond, "bondDissip", bondIx);
-	energy.add(flat.kinetic + (bonds ? rows.kinetic : 0), "kinetic", kineticIx, /*reset*/ true);
-	energy.add(flat.dampedWork + (bonds ? rows.dampedWork : 0), "nonviscDamp", dampIx);
-	flat.sums = {};
-	flat.dampedWork = rows.dampedWork = 0;
-	if (pressure) pressure->bookWork();
-	if (radialServo) radialServo->bookWork();
-	if (oRings) oRings->bookEnergy();
+	size_t w = 0;
+	workIndices.resize(8, -1);
+	hexmembrane::ContactWorks::forEach(spheres.sums.works, [&](const char* name, Real work) { energy.add(work, name, workIndices[w++]); });
+	energy.add(spheres.kinetic + state->motion.kinetic, "kinetic", kineticIx, /*reset*/ true);
+	energy.add(spheres.dampedWork + state->motion.dampedWork, "nonviscDamp", dampIx);
+	spheres.sums = {};
+	spheres.dampedWork = state->motion.dampedWork = 0;
+	for (Stepped* one : stepped) one->bookWorks();
 }
 
 void CompactLoop::stopLost(Body::id_t id)
 {
-	if (bonds) rows.giveVelocities(flat.motions.data() + flat.grains());
-	const auto at = std::find(flat.id.begin(), flat.id.end(), id);
-	const auto& motion = flat.motions[at - flat.id.begin()];
-	const auto& place = flat.places[at - flat.id.begin()];
+	hexmembrane::SphereAssembly& spheres = state->spheres;
+	if (state->sheet.ids) state->motion.giveVelocities(state->velocity(), spheres.motions.data() + spheres.grains());
+	const size_t at = std::find(spheres.id.begin(), spheres.id.end(), id) - spheres.id.begin();
 	const auto text = [](const Vector3r& v) {
 		return "(" + hexmembrane::formatNumber(v[0]) + ", " + hexmembrane::formatNumber(v[1]) + ", " + hexmembrane::formatNumber(v[2]) + ")";
 	};
 	throw std::runtime_error("CompactLoop: body " + std::to_string(id) + " at iteration " + std::to_string(scene->iter) +
-	                         " is not finite or moves half a skin (" + hexmembrane::formatNumber(0.5 * flat.skin()) +
-	                         " m) in one step, the run has lost its stability; position " + text(place.centre) + " m, velocity " + text(motion.velocity) +
+	                         " is not finite or moves half a skin (" + hexmembrane::formatNumber(0.5 * spheres.skin()) +
+	                         " m) in one step, the run has lost its stability; position " + text(spheres.places[at].centre) + " m, velocity " +
+	                         text(spheres.motions[at].velocity) +
 	                         " m/s; fix: load the last checkpoint and use a shorter time step, or look for overlaps and forces that are too large there");
 }
 

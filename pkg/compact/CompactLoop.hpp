@@ -1,136 +1,117 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "boundary/PlatenDrive.hpp"
-#include "boundary/RadialWallServo.hpp"
-#include "contact/LinearContact.hpp"
-#include "kernels/compact/SphereAssembly.hpp"
-#include "kernels/compact/MembraneMotion.hpp"
-#include "membrane/MembraneBonds.hpp"
-#include "membrane/MembraneORings.hpp"
-#include "membrane/MembranePressure.hpp"
-#include "membrane/MembraneRadialServo.hpp"
+#include "CompactState.hpp"
 
 #include <core/GlobalEngine.hpp>
 
+#include <memory>
+
 namespace yade {
 
-/*! The compact tier: collider, interaction loop and integrator in one, over flat arrays, many steps per YADE iteration. */
-class CompactLoop : public GlobalEngine {
+/*! The compact tier: collider, interaction loop and integrator in one, over flat arrays, many steps per YADE iteration. It knows engines by Stepped, boundaries by
+ * BoundaryRegistry and contacts by LinearPhys. */
+class CompactLoop : public GlobalEngine, public ContactKeeper {
 public:
 	void action() override;
+	void postLoad(CompactLoop&);
 	void preSave(CompactLoop&);
 
 	void exportContacts();
 	int contactCount() const;
 	Real criticalTimeStep();
+	static boost::python::list contract();
+
+	bool keepsContacts() const override { return state && !exported; }
+	vector<Vector3r> contactForces(const HexMembrane& membrane) const override;
 
 private:
 	// CompactLoop.cpp: the run of a step
 	void prepareEngines();
+	//! Says so when a tool of YADE will find no contacts.
+	void warnReaders();
 	long stepsToDo() const;
 	void step(bool last);
-	void membraneForces();
-	void driveBoundaries();
 	void moveAll();
-	void bookWorks();
+	void moveSheet();
+	void moveBoundaries();
 	void bookEnergies(Real elastic);
 	[[noreturn]] void stopLost(Body::id_t id);
-	Real transmittedByGroup(int group) const;
 
 	// CompactScene.cpp: between YADE's bodies and the arrays
 	void takeScene();
-	void collect();
-	void collectBoundary(const Body& body, hexmembrane::FlatBoundary::Kind kind);
-	hexmembrane::SphereAssembly::Sphere sphereOf(const Body& body, bool ofMembrane);
-	int materialIndex(const Body& body);
-	void checkMasks() const;
-	bool inSavedOrder(vector<hexmembrane::SphereAssembly::Sphere>& spheres, int grains) const;
-	bool rotatingMembrane() const { return bonds->bondKernel().velocity.fits(collectedMembrane->perRing, collectedMembrane->rings); }
-	bool refreshBodies();
-	void refreshBoundary(size_t b);
-	void refreshMaterials();
+	void collect(const Sheet& sheet);
 	void takeOutsideForces();
 	void giveScene();
-	Real usedSkin() const;
+	Real usedSkin(const hexmembrane::SphereAssembly& spheres) const;
 
 	// CompactContacts.cpp: contacts between the arrays, saved attributes and O.interactions
-	void storeContacts();
-	void forgetStored();
-	void continueLists();
-	void restoreContacts();
-	void indexSpheres();
-	void putContact(Body::id_t a, Body::id_t b, hexmembrane::ContactMemory memory, unsigned char bits);
-	void importInteractions();
-	template <typename Visit>
-	void forEachContact(Visit&& visit) const;
+	vector<KeptContact> contactsSoFar() const;
+	vector<KeptContact> savedContacts() const;
+	vector<KeptContact> interactionContacts() const;
+	bool continueLists(CompactState& next) const;
 	struct Instant {
 		vector<hexmembrane::Place> places;
-		vector<hexmembrane::FlatBoundary> boundaries;
+		vector<std::shared_ptr<const hexmembrane::BoundaryShape>> shapes;
 	};
 	Instant lastInstant() const;
+	void requireRun(const char* what) const;
+
+	//! The instant of a step as the engines see it.
+	class View;
 
 	// Caches: made from the scene and the saved attributes.
-	hexmembrane::SphereAssembly flat;
-	hexmembrane::MembraneMotion rows;
+	std::unique_ptr<CompactState> state; //!< none: nothing collected
+	vector<Stepped*> stepped;            //!< the engines that are not dead
 	vector<hexmembrane::MembraneMotion::Term> terms;
-	vector<Body::id_t> boundaryIds;
-	vector<int> sphereAt; //!< index of each body among the spheres, -1: none; of use while contacts are put in
-	vector<const LinearMat*> materials;
-	size_t collectedBodies = 0;
-	const HexMembrane* collectedMembrane = nullptr;
-	const Scene* collectedScene = nullptr;
-	bool collected = false;
+	vector<WorkMeter*> meters; //!< of the terms
+	vector<hexmembrane::MembraneMotion::Grip> grips;
+	vector<WorkMeter*> gripMeters;
+	vector<const hexmembrane::PaddedRings*> torques;
+	vector<std::shared_ptr<const hexmembrane::BoundaryShape>> stepShapes; //!< of the boundaries when the last step's forces were computed
 	int threads = 1;
 	Real lastDt = 0;
+	bool warned = false;
 
-	// The engines, by what they are.
-	MembraneBonds* bonds = nullptr;
-	MembranePressure* pressure = nullptr;
-	MembraneRadialServo* radialServo = nullptr;
-	MembraneORings* oRings = nullptr;
-	RadialWallServo* wallServo = nullptr;
-	vector<PlatenDrive*> drives;
-
-	int elasticIx = -1, slipIx = -1, rollIx = -1, bondIx = -1, kineticIx = -1, dampIx = -1;
+	vector<int> workIndices;
+	int elasticIx = -1, kineticIx = -1, dampIx = -1;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(CompactLoop,GlobalEngine,
 		"The compact tier: replaces collider, interaction loop and :yref:`NewtonIntegrator` for scenes of spheres of :yref:`LinearMat`, :yref:`Platens<Platen>`, a :yref:`CylinderWall` and one :yref:`HexMembrane`, with the same laws and the same engines as the reference tier. It keeps flat arrays sorted in space, finds neighbours with a cell grid and a skin, and takes many steps in one YADE iteration.\n\n"
-		"``O.engines`` is then :yref:`ForceResetter`, this, and whatever looks at the scene between iterations; the engines of membrane and boundaries go into :yref:`engines<CompactLoop.engines>`, as the same objects that the reference tier has in ``O.engines``. Their attributes are read and written as there.\n\n"
-		"One YADE iteration takes :yref:`substeps<CompactLoop.substeps>` steps, fewer when ``O.run(n)`` or ``O.stopAtTime`` asks for it; ``O.iter`` and ``O.time`` count steps. Before it the bodies are read (a script may move them, change materials, add bodies), after it positions, velocities, orientations and forces stand in ``O.bodies`` and ``O.forces``. Forces that other engines have added before it are held for the whole iteration. "
-		"Contacts live in the arrays; :yref:`exportContacts<CompactLoop.exportContacts>` writes them to ``O.interactions`` for YADE's tools, real contacts found there at the first step are taken over with their history.\n\n"
-		"Formulas: contacts as :yref:`Law2_ScGeom_LinearPhys_Linear` with the geometry of :yref:`Ig2_Sphere_Sphere_LinearScGeom` (``avoidGranularRatcheting=False``); motion as :yref:`NewtonIntegrator` (spheres, local damping; no gravity). Contact parameters follow the materials at once when these change. Membrane particles do not meet each other unless :yref:`membraneContacts<CompactLoop.membraneContacts>` is set. Orientations of grains are advanced by the sum of an iteration's small rotations; those of membrane particles are not kept.\n\n"
-		"One thread repeats and continues a saved run to the last bit; with several threads the sums over contacts have another order, the same one for the same number of threads. :yref:`ompThreads<Engine.ompThreads>` takes fewer of them than ``yade -jN`` gives.\n\n"
+		"``O.engines`` is then :yref:`ForceResetter`, this, and whatever looks at the scene between iterations; the engines of membrane and boundaries go into :yref:`engines<CompactLoop.engines>`, as the same objects that the reference tier has in ``O.engines``, and act in the order of that list. Their attributes are read and written as there, their labels are names as YADE's own are, also after ``O.load``.\n\n"
+		"One YADE iteration takes :yref:`substeps<CompactLoop.substeps>` steps, fewer when ``O.run(n)`` or ``O.stopAtTime`` asks for it; ``O.iter`` and ``O.time`` count steps. Before it the bodies are read, after it positions, velocities, orientations and forces stand in ``O.bodies`` and ``O.forces``. "
+		"What a script may change between iterations, and what is refused, is one table: :yref:`contract<CompactLoop.contract>`. Forces that other engines have added before it are held for the whole iteration; so :yref:`GravityEngine` before it acts as in the reference tier. What is refused leaves everything as it was.\n\n"
+		"Contacts live in the arrays. Our own classes read them there; YADE's tools read ``O.interactions``, which :yref:`exportContacts<CompactLoop.exportContacts>` or :yref:`exportPeriod<CompactLoop.exportPeriod>` fills. Real contacts found there at the first step are taken over with their history.\n\n"
+		"Formulas: contacts as :yref:`Law2_ScGeom_LinearPhys_Linear` with the geometry of :yref:`Ig2_Sphere_Sphere_LinearScGeom` (``avoidGranularRatcheting=False``); motion as :yref:`NewtonIntegrator` (spheres, local damping). Contact parameters follow the materials at once when these change. Membrane particles do not meet each other. Orientations of grains are advanced by the sum of an iteration's small rotations; those of membrane particles are not kept.\n\n"
+		"One thread repeats and continues a saved run to the last bit on one kind of processor; with several threads the sums over contacts have another order, the same one for the same number of threads. :yref:`ompThreads<Engine.ompThreads>` takes fewer of them than ``yade -jN`` gives.\n\n"
 		"Errors: ``ValueError`` or ``RuntimeError`` for bodies, materials or engines that it does not know, before anything is changed; a sphere that moves half a skin in one step or is not finite stops the run with its id and the iteration.\n\n"
 		"Example::\n\n\tO.engines=[ForceResetter(),CompactLoop(engines=[bonds,pressure,servo,bottom,top,oRings],damping=.2)]",
-		((vector<shared_ptr<Engine>>,engines,,,"Engines that are stepped inside: at most one :yref:`MembraneBonds`, :yref:`MembranePressure`, :yref:`MembraneRadialServo`, :yref:`MembraneORings`, :yref:`RadialWallServo`, and :yref:`PlatenDrives<PlatenDrive>`. They do not stand in ``O.engines``."))
+		((vector<shared_ptr<Engine>>,engines,,Attr::triggerPostLoad,"Engines that are stepped inside, in this order: those that implement C++'s ``Stepped``, as :yref:`MembraneBonds`, :yref:`MembranePressure`, :yref:`MembraneRadialServo`, :yref:`PlatenDrive`, :yref:`MembraneORings`, :yref:`RadialWallServo`. They do not stand in ``O.engines``."))
 		((Real,damping,0.2,,"Local damping, as :yref:`NewtonIntegrator.damping` [-], 0 to below 1."))
 		((int,substeps,100,,"Steps in one YADE iteration [-], >= 1."))
 		((Real,skin,NaN,,"Reach of the neighbour lists beyond contact [m]; NaN: 0.3 of the smallest sphere's radius. Larger: longer lists, made more seldom."))
-		((bool,membraneContacts,false,,"Let membrane particles that are not bonded to each other collide (folds of the membrane)."))
+		((int,exportPeriod,0,,"Iterations after which contacts are written to ``O.interactions`` for YADE's own tools (:yref:`VTKRecorder`, ``unbalancedForce``); 0: never. It costs about a microsecond a contact each time."))
 		((long,listsMade,0,Attr::readonly,"How often neighbour lists were made."))
 		((bool,exported,false,Attr::readonly,"``O.interactions`` holds contacts written by :yref:`exportContacts<CompactLoop.exportContacts>`; they are cleared before the next step."))
 		// State of the arrays that the bodies do not hold, as of the last save.
 		((vector<int>,order,,Attr::hidden,""))
 		((vector<Vector3r>,listedCentres,,Attr::hidden,""))
-		((vector<Vector3r>,listedBoundaryCentres,,Attr::hidden,""))
-		((vector<Real>,listedBoundaryRadii,,Attr::hidden,""))
+		((vector<Real>,listedShapes,,Attr::hidden,""))
 		((Real,travelled,0,Attr::hidden,""))
-		((vector<Real>,aheadWork,,Attr::hidden,""))
+		((long,iterations,0,Attr::hidden,""))
 		((vector<Vector2i>,contactIds,,Attr::hidden,""))
 		((vector<int>,contactBits,,Attr::hidden,""))
-		((vector<Vector3r>,contactShear,,Attr::hidden,""))
-		((vector<Vector3r>,contactMoment,,Attr::hidden,""))
-		((vector<Vector3r>,contactNormal,,Attr::hidden,""))
-		((vector<Real>,contactTensile,,Attr::hidden,""))
-		((vector<Real>,contactStrength,,Attr::hidden,""))
+		((vector<Real>,contactNumbers,,Attr::hidden,""))
+		((string,contactFields,"",Attr::hidden,""))
 		,/*ctor*/,
-		.def("exportContacts",&CompactLoop::exportContacts,"Writes all touching contacts, as of the last step, to ``O.interactions`` (:yref:`ScGeom` and :yref:`LinearPhys` with forces, moments, bonds), replacing what is there. Takes about a microsecond a contact; they are cleared before the next step.")
+		.def("exportContacts",&CompactLoop::exportContacts,"Writes all touching contacts, as of the last step, to ``O.interactions`` (:yref:`ScGeom` and :yref:`LinearPhys` with forces, moments, bonds), replacing what is there. They are cleared before the next step.")
 		.def("contactCount",&CompactLoop::contactCount,"Number of touching contacts, boundaries and membrane included.")
+		.def("contract",&CompactLoop::contract,"What is done with each attribute that a script may change between iterations: a list of (of, attribute, 'read' | 'watched' | 'refused', what). Read: acts from the next iteration on. Watched: a change makes the tier collect the scene anew. Refused: an error with body id and fix, before anything is changed.").staticmethod("contract")
 		.def("criticalTimeStep",&CompactLoop::criticalTimeStep,"Critical time step [s] of central differences, $2/\\omega$, with the highest frequency $\\omega$ of the contacts and membrane bonds as they are now (all sticking), by power iteration to about 1 %.")
 	);
 	// clang-format on
+	DECLARE_LOGGER;
 };
 REGISTER_SERIALIZABLE(CompactLoop);
 

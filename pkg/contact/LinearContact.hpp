@@ -69,7 +69,7 @@ public:
 		ks = law.ks;
 		tangensOfFrictionAngle = law.friction;
 		rollingArm = law.rollingArm;
-		kr = law.kr;
+		kr = law.rollingArm > 0 ? law.kr : 0;
 		spheres = ofSpheres;
 	}
 	/// Nothing but a normal force: no friction, rolling resistance or bond, and nothing left of them (they can be switched off while a test runs).
@@ -77,7 +77,14 @@ public:
 	{
 		return !(tangensOfFrictionAngle > 0) && !(rollingArm > 0) && !bonded && shearForce == Vector3r::Zero() && moment == Vector3r::Zero();
 	}
-	hexmembrane::ContactLaw law() const { return {kn, ks, tangensOfFrictionAngle, kr, rollingArm, tensileStrength, shearStrength}; }
+	hexmembrane::ContactLaw law() const { return {{kn, ks, tangensOfFrictionAngle, kr, rollingArm}, tensileStrength, shearStrength}; }
+	/// What the contact remembers, with its normal, and back.
+	hexmembrane::ContactMemory<double> memory(const Vector3r& normal) const { return {shearForce, moment, normal}; }
+	void remember(const hexmembrane::ContactMemory<double>& memory)
+	{
+		shearForce = memory.shear;
+		moment = memory.moment;
+	}
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(LinearPhys,RotStiffFrictPhys,

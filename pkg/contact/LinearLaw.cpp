@@ -14,7 +14,7 @@ bool Law2_ScGeom_LinearPhys_Linear::go(shared_ptr<IGeom>& geometry, shared_ptr<I
 	if (!phys.normalOnly()) return advance(geom, phys, *contact);
 	if (geom.penetrationDepth < 0) return false;
 	phys.normalForce = phys.kn * geom.penetrationDepth * geom.normal;
-	if (scene->trackEnergy) book({phys.kn * geom.penetrationDepth, false, hexmembrane::BondBreak::none, 0, 0, 0}, phys);
+	if (scene->trackEnergy) book({phys.kn * geom.penetrationDepth, false, hexmembrane::BondBreak::none, {}}, phys);
 	pushApart(geom, phys, *contact);
 	return true;
 }
@@ -77,30 +77,29 @@ void Law2_ScGeom_LinearPhys_Linear::push(const ScGeom& geom, const LinearPhys& p
 void Law2_ScGeom_LinearPhys_Linear::nameEnergies()
 {
 #pragma omp critical(hexmembraneContactEnergies)
-	{
-		int last = bondDissipIx;
-		if (last < 0) {
-			scene->energy->findId("elastPotential", elastPotentialIx, /*reset*/ true);
-			scene->energy->findId("plastDissip", plastDissipIx);
-			scene->energy->findId("rollDissip", rollDissipIx);
-			scene->energy->findId("bondDissip", last);
+	if (!named) {
+		scene->energy->findId("elastPotential", elasticIndex, /*reset*/ true);
+		size_t w = 0;
+		const hexmembrane::ContactWorks works;
+		hexmembrane::ContactWorks::forEach(works, [&](const char* name, Real) { scene->energy->findId(name, workIndices.at(w++)); });
 #pragma omp atomic write
-			bondDissipIx = last;
-		}
+		named = 1;
 	}
 }
 
 void Law2_ScGeom_LinearPhys_Linear::book(const hexmembrane::ContactStep& step, const LinearPhys& phys)
 {
-	int named;
+	int known;
 #pragma omp atomic read
-	named = bondDissipIx;
-	if (named < 0) nameEnergies();
+	known = named;
+	if (!known) nameEnergies();
 	const Real elastic = hexmembrane::contactEnergy(phys.law(), step.normal, phys.shearForce, phys.moment);
-	scene->energy->add(elastic, "elastPotential", elastPotentialIx, /*reset*/ true);
-	if (step.slipWork != 0) scene->energy->add(step.slipWork, "plastDissip", plastDissipIx);
-	if (step.rollWork != 0) scene->energy->add(step.rollWork, "rollDissip", rollDissipIx);
-	if (step.bondEnergy != 0) scene->energy->add(step.bondEnergy, "bondDissip", bondDissipIx);
+	scene->energy->add(elastic, "elastPotential", elasticIndex, /*reset*/ true);
+	size_t w = 0;
+	hexmembrane::ContactWorks::forEach(step.works, [&](const char* name, Real work) {
+		if (work != 0) scene->energy->add(work, name, workIndices[w]);
+		++w;
+	});
 }
 
 } // namespace yade

@@ -3,6 +3,8 @@
 
 #include "LinearContact.hpp"
 
+#include <array>
+
 namespace yade {
 
 class Law2_ScGeom_LinearPhys_Linear : public LawFunctor {
@@ -16,6 +18,11 @@ private:
 	void nameEnergies();
 	void book(const hexmembrane::ContactStep& step, const LinearPhys& phys);
 
+	// Indices of the energies, -1: not named yet.
+	int elasticIndex = -1;
+	std::array<int, 3> workIndices{-1, -1, -1};
+	int named = 0;
+
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(Law2_ScGeom_LinearPhys_Linear,LawFunctor,
 		"PFC's linear contact laws on spheres and on spheres against boundaries: linear, linear with rolling resistance, linear contact bond. Every contact does what its :yref:`LinearPhys` asks for and no more.\n\n"
@@ -26,10 +33,6 @@ private:
 		"With :yref:`O.trackEnergy<Omega.trackEnergy>`: 'elastPotential', 'plastDissip' (sliding), 'rollDissip' (rolling), 'bondDissip' (elastic energy set free by breaking bonds).",
 		((int,tensileBreaks,0,Attr::readonly,"Bonds that broke in tension so far."))
 		((int,shearBreaks,0,Attr::readonly,"Bonds that broke in shear so far."))
-		((int,elastPotentialIx,-1,(Attr::hidden|Attr::noSave),"Index of the elastic energy."))
-		((int,plastDissipIx,-1,(Attr::hidden|Attr::noSave),"Index of the work of sliding."))
-		((int,rollDissipIx,-1,(Attr::hidden|Attr::noSave),"Index of the work of rolling."))
-		((int,bondDissipIx,-1,(Attr::hidden|Attr::noSave),"Index of the energy of broken bonds."))
 	);
 	// clang-format on
 	FUNCTOR2D(ScGeom, LinearPhys);

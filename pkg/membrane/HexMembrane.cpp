@@ -1,8 +1,9 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "HexMembrane.hpp"
 
-#include "GatherBodies.hpp"
+#include "base/GatherBodies.hpp"
 #include "base/NamedFields.hpp"
+#include "compact/Stepped.hpp"
 #include "kernels/membrane/MembraneTension.hpp"
 #include "kernels/membrane/PressureForce.hpp"
 #include "kernels/membrane/RadialForce.hpp"
@@ -234,7 +235,7 @@ vector<Vector3r> HexMembrane::contactForces(const Scene& scene, const string& wh
 			const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
 			if (!phys) continue;
 			// YADE's laws apply +normalForce to the second body
-			forces[i] += contact.getId1() == ids[i] ? phys->normalForce : Vector3r(-phys->normalForce);
+			forces[i] += contact.getId1() == ids[i] ? Vector3r(-phys->normalForce) : phys->normalForce;
 		}
 	return forces;
 }
@@ -255,20 +256,42 @@ Real HexMembrane::groupPressure(int group, const vector<Vector3r>& x, const vect
 	return force / area;
 }
 
+Real HexMembrane::transmitted(StepView& view, int group, const string& who) const
+{
+	const hexmembrane::PaddedRings& rows = view.positions(*this);
+	vector<Vector3r> x;
+	x.reserve(ids.size());
+	for (int k = 0; k < rings; ++k)
+		for (int i = 0; i < perRing; ++i) x.push_back(rows.get(k, i));
+	return groupPressure(group, x, pressing(view.contactForces(*this)), who);
+}
+
+// What the particles press on others, from what others press on them.
+vector<Vector3r> HexMembrane::pressing(vector<Vector3r> onParticles)
+{
+	for (Vector3r& force : onParticles) force = -force;
+	return onParticles;
+}
+
+vector<Vector3r> HexMembrane::pressingNow(const string& who) const
+{
+	requireGenerated(who);
+	const ContactKeeper* keeper = ContactKeeper::in(currentScene());
+	return pressing(keeper ? keeper->contactForces(*this) : contactForces(currentScene(), who));
+}
+
 Real HexMembrane::transmittedPressure(int group) const
 {
 	const string who = "HexMembrane.transmittedPressure";
-	requireGenerated(who);
-	return groupPressure(group, positions_get(), contactForces(currentScene(), who), who);
+	return groupPressure(group, positions_get(), pressingNow(who), who);
 }
 
 vector<Real> HexMembrane::transmittedByRing() const
 {
 	const string who = "HexMembrane.transmittedByRing";
-	requireGenerated(who);
+	const vector<Vector3r> forces = pressingNow(who);
 	vector<Real> pressures;
-	for (const auto& load : hexmembrane::ringLoads(stencil(), positions_get(), contactForces(currentScene(), who), sphereRadius))
-		pressures.push_back(load.force / load.area);
+	for (const auto& load : hexmembrane::ringLoads(stencil(), positions_get(), forces, sphereRadius)) pressures.push_back(load.force / load.area);
 	return pressures;
 }
 

@@ -12,6 +12,8 @@
 
 namespace yade {
 
+class StepView;
+
 /*! The membrane as a set of ordinary sphere bodies plus what is known of their arrangement. The engines of this folder share one of these. */
 class HexMembrane : public Serializable {
 public:
@@ -38,6 +40,10 @@ public:
 	Real transmittedPressure(int group) const;
 	//! The same ring by ring (Pa).
 	vector<Real> transmittedByRing() const;
+	//! Sum of the normal contact forces of all that is not membrane on each particle (N), from O.interactions.
+	vector<Vector3r> contactForces(const Scene& scene, const string& who) const;
+	//! The pressure that a group transmits in this instant (Pa).
+	Real transmitted(StepView& view, int group, const string& who) const;
 	//! Mean pressure (Pa) that forces on the particles (N, positive inwards) are over the inner area of a group (0: all of groups 2 and 3).
 	Real groupPressure(int group, const vector<Vector3r>& x, const vector<Vector3r>& forces, const string& who) const;
 
@@ -55,11 +61,11 @@ private:
 	void checkGrain(Real sphereRadius) const;
 	//! Centres, or the points one radius further in along the vertex normals.
 	vector<Vector3r> surfacePoints(const string& surface) const;
+	static vector<Vector3r> pressing(vector<Vector3r> onParticles);
+	//! Of the last step, in either tier (N).
+	vector<Vector3r> pressingNow(const string& who) const;
 	//! Area and volume of that surface between two heights (NaN: to the end rings); `argument` is the lower one's name in a complaint.
 	hexmembrane::TubeSlab slab(const string& surface, Real zBottom, Real zTop, const char* argument) const;
-	//! Sum of the normal contact forces of each particle on all that is not membrane (N).
-	vector<Vector3r> contactForces(const Scene& scene, const string& who) const;
-
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(HexMembrane,Serializable,
 		"A flexible membrane: hexagonal rings of equal spheres round an upright cylindrical specimen. :yref:`generate<HexMembrane.generate>` appends them as ordinary :yref:`Sphere` bodies; "

@@ -1,10 +1,12 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneBonds.hpp"
 
-#include "GatherBodies.hpp"
+#include "base/GatherBodies.hpp"
 #include "base/NamedFields.hpp"
 #include "kernels/membrane/LatticeConstants.hpp"
 #include "kernels/membrane/MembraneTension.hpp"
+
+#include <pkg/common/Collider.hpp>
 
 namespace yade {
 
@@ -58,62 +60,46 @@ void MembraneBonds::prepare()
 	builtFor = membrane.get();
 }
 
-void MembraneBonds::gatherRing(int k, vector<int>& missing)
+void MembraneBonds::requireReferenceScene() const
 {
-	const int n = membrane->perRing;
-	const bool rotating = built.ks > 0;
-	const auto& bodies = *scene->bodies;
-	for (int i = 0; i < n; ++i) {
-		prefetchAhead(bodies, membrane->ids, k * n + i);
-		const Body* b = livingBody(bodies, membrane->ids[k * n + i]);
-		if (!b) {
-			missing[k] = k * n + i;
-			return;
-		}
-		kernel->position.set(k, i, b->state->se3.position);
-		if (!rotating) continue;
-		kernel->velocity.set(k, i, b->state->vel);
-		kernel->spin.set(k, i, b->state->angVel);
-	}
-	kernel->position.wrap(k);
-	if (!rotating) return;
-	kernel->velocity.wrap(k);
-	kernel->spin.wrap(k);
-}
-
-void MembraneBonds::scatterRing(int k, vector<int>& bad)
-{
-	const int n = membrane->perRing;
-	for (int i = 0; i < n; ++i) {
-		const Vector3r f = kernel->force.get(k, i);
-		if (!isFinite(f)) bad[k] = k * n + i;
-		scene->forces.addForce(membrane->ids[k * n + i], f);
-		if (built.ks > 0) scene->forces.addTorque(membrane->ids[k * n + i], kernel->torque.get(k, i));
+	const int mask = membrane->body(*scene, 0, "MembraneBonds")->groupMask;
+	for (const auto& engine : scene->engines) {
+		const auto* collider = dynamic_cast<const Collider*>(engine.get());
+		if (collider && !(collider->avoidSelfInteractionMask & mask))
+			throw std::runtime_error("MembraneBonds: the collider lets the membrane's bonded spheres collide with each other; fix: "
+			                         "Collider.avoidSelfInteractionMask with a bit of HexMembrane.mask = " +
+			                         std::to_string(mask) + ", one that no other body has");
 	}
 }
 
-void MembraneBonds::action()
+Sheet MembraneBonds::sheet()
 {
-	prepare();
-	// one slot a ring for what goes wrong: exceptions must not leave a parallel loop
-	vector<int> missing(membrane->rings, -1), bad(membrane->rings, -1);
-#pragma omp parallel for schedule(static)
-	for (int k = 0; k < membrane->rings; ++k) gatherRing(k, missing);
-	for (int m : missing)
-		if (m >= 0) membrane->body(*scene, m, "MembraneBonds"); // throws
-
-	computeForces();
-
-#pragma omp parallel for schedule(static)
-	for (int k = 0; k < membrane->rings; ++k) scatterRing(k, bad);
-	for (int b : bad)
-		if (b >= 0) throwNotFinite("MembraneBonds: bond force", membrane->ids[b], *scene);
-	bookEnergy();
+	const bool turning = built.ks > 0;
+	return {membrane.get(),
+	        &membrane->ids,
+	        membrane->stencil(),
+	        &kernel->position,
+	        turning ? &kernel->velocity : nullptr,
+	        turning ? &kernel->spin : nullptr};
 }
 
-void MembraneBonds::computeForces() { kernel->compute(state(), scene->dt); }
+void MembraneBonds::forEachBond(const VisitBond& visit) const
+{
+	const auto tube = membrane->stencil();
+	const auto at = [&](int v) { return kernel->position.get(v / tube.perRing, v % tube.perRing); };
+	for (const auto& pair : hexmembrane::bondList(tube)) visit(pair[0], pair[1], at(pair[1]) - at(pair[0]), built.kn, built.ks);
+}
 
-void MembraneBonds::bookEnergy()
+void MembraneBonds::step(StepView& view)
+{
+	view.refresh(sheet());
+	kernel->compute(state(), scene->dt);
+	view.addForces(*membrane, {{0, membrane->rings - 1}}, kernel->force, built.ks > 0 ? &kernel->torque : nullptr, nullptr);
+}
+
+void MembraneBonds::action() { stepOverBodies(*this); }
+
+void MembraneBonds::bookStored()
 {
 	if (scene->trackEnergy) scene->energy->add(elasticEnergy(), "elastMembrane", energyIndex, /*reset*/ true);
 }

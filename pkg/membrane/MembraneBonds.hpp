@@ -3,6 +3,8 @@
 
 #include "HexMembrane.hpp"
 
+#include "compact/Stepped.hpp"
+
 #include "kernels/membrane/BondForce.hpp"
 #include "kernels/contact/ContactLaw.hpp"
 
@@ -13,7 +15,7 @@
 namespace yade {
 
 /*! The membrane's own mechanics over flat arrays: gathers the particles once a step, runs the bond kernel, adds the forces. */
-class MembraneBonds : public GlobalEngine {
+class MembraneBonds : public GlobalEngine, public Stepped {
 public:
 	void action() override;
 
@@ -26,21 +28,16 @@ public:
 	Real axialTension(Real z);
 	Real radialShare(int group);
 
-	// In parts, for an engine that steps the membrane itself: prepare() once, then positions into the kernel and computeForces() each step.
-	//! \throws std::invalid_argument, std::runtime_error for what is set wrong
-	void prepare();
-	//! Holds positions (and with shear velocities and spins) that it is given, and the forces of the last step.
-	hexmembrane::BondForce& bondKernel() { return *kernel; }
-	void computeForces();
-	//! Stiffness of a bond (N/m), after prepare().
-	hexmembrane::Springs springs() const { return {built.kn, built.ks}; }
-	//! Enters the elastic energy into the scene's energies.
-	void bookEnergy();
+	void prepare() override;
+	void step(StepView& view) override;
+	void bookStored() override;
+	Sheet sheet() override;
+	void forEachBond(const VisitBond& visit) const override;
+	const HexMembrane* actsOn() const override { return membrane.get(); }
+	void requireReferenceScene() const override;
 
 private:
 	hexmembrane::BondLaw law() const;
-	void gatherRing(int k, vector<int>& missing);
-	void scatterRing(int k, vector<int>& bad);
 	void requireStepped(const char* what) const;
 	//! Positions that the last step's forces belong to.
 	vector<Vector3r> steppedPositions() const;

@@ -3,32 +3,29 @@
 
 #include "HexMembrane.hpp"
 
+#include "compact/Stepped.hpp"
+
 #include <core/GlobalEngine.hpp>
 
 namespace yade {
 
 /*! Holds the O-ring rows (group 1) in space or lets them ride with the platens. */
-class MembraneORings : public GlobalEngine {
+class MembraneORings : public GlobalEngine, public Stepped {
 public:
 	void action() override;
 
-	//! Velocities of the lower and the upper rows. \throws std::invalid_argument, std::runtime_error for what is set wrong
-	std::pair<Vector3r, Vector3r> velocities() const;
-	//! Enters `work` into the scene's energies, once an iteration.
-	void bookEnergy();
+	void prepare() override;
+	void step(StepView& view) override;
+	void bookWorks() override;
+	const HexMembrane* actsOn() const override { return membrane.get(); }
+
+	Real work_get() const { return meter->work; }
 
 private:
 	const Body& platen(Body::id_t id, const char* name) const;
-	void requireOrder() const;
-	//! Gives ring k the velocity; what its particles gain of kinetic energy is the grip's work. Notes force and position of each.
-	void grip(int k, const Vector3r& velocity, vector<Vector3r>& held, vector<Vector3r>& at);
-	//! Work since the last step by the grip's forces, minus those on the particles, and their positions; both are taken over.
-	void bookWork(vector<Vector3r>& held, vector<Vector3r>& at);
-
-	int energyIndex = -1;
 
 	// clang-format off
-	YADE_CLASS_BASE_DOC_ATTRS(MembraneORings,GlobalEngine,
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneORings,GlobalEngine,
 		"Motion of the O-ring rows (group 1) of a :yref:`HexMembrane`. Their particles are blocked in all degrees of freedom; this engine sets their velocity every step. Stands after all engines that add forces and after the platens' drives, and before :yref:`NewtonIntegrator`.\n\n"
 		"mode 'fixed': held in space throughout (the source study). 'platens': the lower rows move with bottomPlaten, the upper ones with topPlaten, as O-rings on the caps of a triaxial cell do. "
 		"(A platen whose velocity the integrator changes in the same step leads them by one step's velocity change; this does not accumulate.)\n\n"
@@ -40,10 +37,9 @@ private:
 		((string,mode,"fixed",,"'fixed' or 'platens'."))
 		((Body::id_t,bottomPlaten,-1,,"Id of the body that the lower rows ride on (mode 'platens')."))
 		((Body::id_t,topPlaten,-1,,"Id of the body that the upper rows ride on (mode 'platens')."))
-		((Real,work,0,Attr::readonly,"Work done by the O-rings on the membrane so far [J]: against the forces on its gripped particles, trapezoidal in force and displacement, and what these particles gained in kinetic energy; positive when the O-rings stretch the membrane."))
-		((vector<Vector3r>,lastForces,,(Attr::readonly|Attr::hidden),"Grip without inertia at the last step, for the work."))
-		((vector<Vector3r>,lastPositions,,(Attr::readonly|Attr::hidden),"Positions of the last step, for the work."))
-		((long,lastIter,-2,(Attr::readonly|Attr::hidden),"Iteration of the last step, for the work: what happens while the engine is dead is not its doing."))
+		((shared_ptr<WorkMeter>,meter,new WorkMeter,(Attr::readonly|Attr::hidden),"Work of the grip."))
+		,/*ctor*/,
+		.add_property("work",&MembraneORings::work_get,"Work done by the O-rings on the membrane so far [J]: against the forces on its gripped particles, trapezoidal in force and displacement, and what these particles gained in kinetic energy; positive when the O-rings stretch the membrane.")
 	);
 	// clang-format on
 };

@@ -1,10 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembranePressure.hpp"
 
-#include "GatherBodies.hpp"
+#include "base/GatherBodies.hpp"
 #include "base/NamedFields.hpp"
-#include "kernels/base/IntegralController.hpp"
-#include "kernels/base/TrapezoidalWork.hpp"
 
 namespace yade {
 
@@ -47,10 +45,11 @@ void MembranePressure::prepareMesh()
 void MembranePressure::prepare()
 {
 	hexmembrane::requireFinite("MembranePressure.pressure", pressure, "Pa");
-	hexmembrane::requireNonNegative("MembranePressure.gain", gain, "1");
-	if (gain > 0) {
-		if (!membrane) hexmembrane::reject("MembranePressure.gain", gain, "a mesh of your own has no transmitted pressure to close the loop with", "0");
-		if (iterPeriod < 1) hexmembrane::reject("MembranePressure.iterPeriod", iterPeriod, "must be at least one step", "500, say");
+	loop().require(scene->dt);
+	if (loop().closed()) {
+		if (!membrane)
+			hexmembrane::reject("MembranePressure.timeConstant", timeConstant,
+			                    "a mesh of your own has no transmitted pressure to close the loop with", "inf");
 		if (!(maxFactor > 1) || !math::isfinite(maxFactor))
 			hexmembrane::reject("MembranePressure.maxFactor", maxFactor, "leaves no room for corrections", "a number above 1");
 	}
@@ -73,58 +72,46 @@ void MembranePressure::prepare()
 	builtTriangles = triangles;
 }
 
-void MembranePressure::computeMesh()
+PressureLoop MembranePressure::loop() { return {"MembranePressure", timeConstant, 1 / maxFactor, maxFactor, factor, transmitted, saturated, lastCorrection}; }
+
+void MembranePressure::requireCompactScene() const
 {
-	positions.resize(vertexIds.size());
-	const int missing = forEachState(*scene->bodies, vertexIds, [this](int i, const State& state) { positions[i] = state.se3.position; });
-	if (missing >= 0)
-		throw std::runtime_error("MembranePressure: body " + std::to_string(vertexIds[missing]) + " of the loaded surface is gone (iteration " +
-		                         std::to_string(scene->iter) + "); fix: do not erase it, or load the last checkpoint");
-	mesh.compute(pressure, positions, force);
+	if (!membrane) throw std::runtime_error("MembranePressure: a mesh of your own is not stepped in the compact tier; fix: use the reference tier");
 }
 
-void MembranePressure::closeLoop(const std::function<Real()>& transmittedNow)
+void MembranePressure::action() { stepOverBodies(*this); }
+
+void MembranePressure::step(StepView& view)
 {
-	if (!(gain > 0) || scene->iter % iterPeriod != 0) return;
-	transmitted = transmittedNow();
-	factor = hexmembrane::correctedFactor(factor, gain, pressure, transmitted, 1 / maxFactor, maxFactor, saturated);
+	if (!tube) return stepMesh();
+	loop().close(*scene, pressure, [&] { return membrane->transmitted(view, 3, "MembranePressure"); });
+	tube->compute(applied(), view.positions(*membrane));
+	view.addForces(*membrane, {{tube->firstRing(), tube->lastRing()}}, tube->force, nullptr, meter.get());
 }
 
-void MembranePressure::action()
+void MembranePressure::stepMesh()
 {
-	prepare();
-	if (tube) {
-		closeLoop([this]() { return membrane->transmittedPressure(3); });
-		membrane->gather(*scene, "MembranePressure", rows);
-		tube->compute(applied(), rows);
-	} else
-		computeMesh();
-
-	const int loadedCount = static_cast<int>(loaded.size());
-	loadedForces.resize(loadedCount);
-	loadedPositions.resize(loadedCount);
-	int bad = -1;
-#pragma omp parallel for schedule(static) reduction(max : bad)
-	for (int l = 0; l < loadedCount; ++l) {
-		const int v = loaded[l];
-		loadedForces[l] = forceOn(v);
-		loadedPositions[l] = positionOf(v);
-		if (!isFinite(loadedForces[l])) bad = std::max(bad, v);
-		scene->forces.addForce(vertexIds[v], loadedForces[l]);
+	const int count = static_cast<int>(vertexIds.size());
+	positions.resize(count);
+	for (int i = 0; i < count; ++i) {
+		const Body* b = livingBody(*scene->bodies, vertexIds[i]);
+		if (!b)
+			throw std::runtime_error("MembranePressure: body " + std::to_string(vertexIds[i]) + " of the loaded surface is gone (iteration " +
+			                         std::to_string(scene->iter) + "); fix: do not erase it, or load the last checkpoint");
+		positions[i] = b->state->se3.position;
 	}
-	if (bad >= 0) throwNotFinite("MembranePressure: force", vertexIds[bad], *scene);
-	work += hexmembrane::WorkMeter{lastIter, lastForces, lastPositions}.record(scene->iter, loadedForces, loadedPositions);
-	bookWork();
+	mesh.compute(pressure, positions, force);
+	for (int i = 0; i < count; ++i) {
+		if (!isFinite(force[i])) throwNotFinite("MembranePressure: force", vertexIds[i], *scene);
+		scene->forces.addForce(vertexIds[i], force[i]);
+	}
+	vector<Vector3r> f(force), x(positions);
+	meter->add(scene->iter, f, x);
 }
 
-void MembranePressure::bookWork()
-{
-	if (scene->trackEnergy) scene->energy->add(-work, "pressureWork", energyIndex, /*reset*/ true);
-}
+void MembranePressure::bookWorks() { meter->book(*scene, "pressureWork"); }
 
 Vector3r MembranePressure::forceOn(int v) const { return tube ? tube->force.get(v / membrane->perRing, v % membrane->perRing) : force[v]; }
-
-Vector3r MembranePressure::positionOf(int v) const { return tube ? rows.get(v / membrane->perRing, v % membrane->perRing) : positions[v]; }
 
 void MembranePressure::requireStepped(const char* what) const
 {

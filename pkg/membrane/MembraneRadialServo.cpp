@@ -1,10 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneRadialServo.hpp"
 
-#include "GatherBodies.hpp"
+#include "base/GatherBodies.hpp"
 #include "kernels/base/Check.hpp"
-#include "kernels/base/IntegralController.hpp"
-#include "kernels/base/TrapezoidalWork.hpp"
 
 namespace yade {
 
@@ -27,11 +25,8 @@ void MembraneRadialServo::prepare()
 		throw std::runtime_error("MembraneRadialServo.membrane = None: no membrane to act on; fix: MembraneRadialServo(membrane=HexMembrane(...))");
 	membrane->requireGenerated("MembraneRadialServo");
 	hexmembrane::requireFinite("MembraneRadialServo.pressure", pressure, "Pa");
-	hexmembrane::requireNonNegative("MembraneRadialServo.gain", gain, "1");
-	if (gain > 0) {
-		hexmembrane::requirePositive("MembraneRadialServo.maxFactor", maxFactor, "1");
-		if (iterPeriod < 1) hexmembrane::reject("MembraneRadialServo.iterPeriod", iterPeriod, "must be at least one step", "50, say");
-	}
+	loop().require(scene->dt);
+	if (loop().closed()) hexmembrane::requirePositive("MembraneRadialServo.maxFactor", maxFactor, "1");
 	rule = areaRuleFromName(areaRule);
 	rows.clear();
 	for (int k = 0; k < membrane->rings; ++k)
@@ -41,15 +36,14 @@ void MembraneRadialServo::prepare()
 		        "MembraneRadialServo.membrane: it has no rows beside the platens (group 2); fix: HexMembrane(platenRows=2), or leave this engine out");
 }
 
-void MembraneRadialServo::correct(Real measured)
-{
-	transmitted = measured;
-	factor = hexmembrane::correctedFactor(factor, gain, pressure, measured, 0, maxFactor, saturated);
-}
+PressureLoop MembraneRadialServo::loop() { return {"MembraneRadialServo", timeConstant, 0, maxFactor, factor, transmitted, saturated, lastCorrection}; }
 
-void MembraneRadialServo::computeForces(const hexmembrane::PaddedRings& x, const std::function<Real()>& transmittedNow)
+void MembraneRadialServo::action() { stepOverBodies(*this); }
+
+void MembraneRadialServo::step(StepView& view)
 {
-	if (gain > 0 && scene->iter % iterPeriod == 0) correct(transmittedNow());
+	loop().close(*scene, pressure, [&] { return membrane->transmitted(view, 2, "MembraneRadialServo"); });
+	const hexmembrane::PaddedRings& x = view.positions(*membrane);
 	const auto tube = membrane->stencil();
 	if (!force.fits(tube.perRing, tube.rings)) force = hexmembrane::PaddedRings(tube.perRing, tube.rings);
 	area = 0;
@@ -62,27 +56,10 @@ void MembraneRadialServo::computeForces(const hexmembrane::PaddedRings& x, const
 		}
 		area += a * tube.perRing;
 	}
+	const int lower = static_cast<int>(rows.size()) / 2; // as many below the main body as above it
+	view.addForces(*membrane, {{rows.front(), rows[lower - 1]}, {rows[lower], rows.back()}}, force, nullptr, meter.get());
 }
 
-void MembraneRadialServo::action()
-{
-	prepare();
-	membrane->gather(*scene, "MembraneRadialServo", positions);
-	computeForces(positions, [this]() { return membrane->transmittedPressure(2); });
-	vector<Vector3r> f, x;
-	for (int k : rows)
-		for (int i = 0; i < membrane->perRing; ++i) {
-			f.push_back(force.get(k, i));
-			x.push_back(positions.get(k, i));
-			scene->forces.addForce(membrane->ids[k * membrane->perRing + i], f.back());
-		}
-	work += hexmembrane::WorkMeter{lastIter, lastForces, lastPositions}.record(scene->iter, f, x);
-	bookWork();
-}
-
-void MembraneRadialServo::bookWork()
-{
-	if (scene->trackEnergy) scene->energy->add(-work, "radialServoWork", energyIndex, /*reset*/ true);
-}
+void MembraneRadialServo::bookWorks() { meter->book(*scene, "radialServoWork"); }
 
 } // namespace yade

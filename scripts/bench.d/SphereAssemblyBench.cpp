@@ -2,6 +2,8 @@
 // Cost of the compact tier's contacts, motion and lists in a dense packing, in ns a touching contact or a sphere.
 #include "kernels/base/Random.hpp"
 #include "kernels/packing/SpherePacking.hpp"
+#include "kernels/boundary/CylinderContact.hpp"
+#include "kernels/boundary/PlatenContact.hpp"
 #include "kernels/compact/SphereAssembly.hpp"
 
 #include <benchmark/benchmark.h>
@@ -31,8 +33,9 @@ SphereAssembly packed(double friction, double rollingFriction)
 		spheres.push_back({i, {packing.centres[i], r}, {anywhere(1e-3), anywhere(1)}, mass, 0.4 * mass * r * r, 0, false});
 	}
 	SphereAssembly flat;
-	flat.boundaries.push_back({FlatBoundary::Kind::platen, {Vec3(0, 0, -1e-3), Vec3::UnitZ(), 0.03, 1e-3}, Vec3::Zero(), Vec3::Zero(), 0});
-	flat.boundaries.push_back({FlatBoundary::Kind::cylinder, {Vec3(0, 0, 0.04), Vec3::UnitZ(), 0.02, 0.05}, Vec3::Zero(), Vec3::Zero(), 0});
+	const Vec3 below(0, 0, -1e-3), middle(0, 0, 0.04);
+	flat.boundaries.push_back({boundaryShape(PlatenBoundary{{below, Vec3::UnitZ(), 0.03, 1e-3}}), below, Vec3::Zero(), Vec3::Zero(), 0});
+	flat.boundaries.push_back({boundaryShape(CylinderBoundary{middle, 0.02, 0.05}), middle, Vec3::Zero(), Vec3::Zero(), 0});
 	flat.setSpheres(spheres, int(spheres.size()));
 	flat.setSkin(0.3 * 0.7e-3);
 	ContactMaterial sand;
@@ -59,8 +62,8 @@ void contacts(benchmark::State& state, double friction, double rollingFriction)
 		benchmark::DoNotOptimize(flat.loads.data());
 	}
 	int touching = 0;
-	flat.contacts.forEachTouching([&](int, int, const ContactMemory&, unsigned char) { ++touching; });
-	for (const BoundaryContacts& boundary : flat.boundaryContacts) boundary.forEachTouching([&](int, const ContactMemory&, unsigned char) { ++touching; });
+	flat.contacts.forEachTouching([&](int, int, const Contact&) { ++touching; });
+	for (const BoundaryContacts& boundary : flat.boundaryContacts) boundary.forEachTouching([&](int, const Contact&) { ++touching; });
 	state.counters["contacts"] = touching;
 	state.counters["listed"] = flat.contacts.size();
 	perItem(state, "perContact", touching);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/base/Simd.hpp"
+#include "kernels/base/Vec3.hpp"
 
 #include <cmath>
 
@@ -43,7 +44,14 @@ HEXMEMBRANE_INLINE Lanes squareRoot(Lanes v)
 	for (int k = 0; k < 4; ++k) root[k] = std::sqrt(v[k]);
 	return root;
 }
-HEXMEMBRANE_INLINE Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
+HEXMEMBRANE_INLINE double squareRoot(double v) { return std::sqrt(v); }
+
+/// The larger one; a NaN in `a` gives b, one in `b` stays.
+template <class V>
+HEXMEMBRANE_INLINE V larger(V a, V b)
+{
+	return a > b ? a : b;
+}
 
 /// Rows become columns: four records of four numbers become the four numbers of four records, and back.
 HEXMEMBRANE_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d)
@@ -66,5 +74,37 @@ HEXMEMBRANE_INLINE Lanes3 operator-(const Lanes3& a, const Lanes3& b) { return {
 HEXMEMBRANE_INLINE Lanes3 operator*(Lanes s, const Lanes3& v) { return {s * v.x, s * v.y, s * v.z}; }
 HEXMEMBRANE_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 HEXMEMBRANE_INLINE Lanes3 cross(const Lanes3& a, const Lanes3& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+
+HEXMEMBRANE_INLINE double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+HEXMEMBRANE_INLINE Vec3 cross(const Vec3& a, const Vec3& b) { return a.cross(b); }
+
+/// The part of v across the unit vector n.
+HEXMEMBRANE_INLINE Vec3 acrossNormal(const Vec3& v, const Vec3& n) { return v - dot(n, v) * n; }
+HEXMEMBRANE_INLINE Lanes3 acrossNormal(const Lanes3& v, const Lanes3& n) { return v - dot(n, v) * n; }
+
+/// What a formula is written over: one number (V = double) or four (V = Lanes). `mask ? a : b` is a branch for the one and a choice lane by lane for the other.
+template <class V>
+struct Width;
+template <>
+struct Width<double> {
+	using Vector = Vec3;
+	using Mask = bool;
+	static double constant(double value) { return value; }
+};
+template <>
+struct Width<Lanes> {
+	using Vector = Lanes3;
+	using Mask = LaneMask;
+	HEXMEMBRANE_INLINE static Lanes constant(double value) { return lanes(value); }
+};
+template <class V>
+using Vector = typename Width<V>::Vector;
+template <class V>
+using Mask = typename Width<V>::Mask;
+template <class V>
+HEXMEMBRANE_INLINE V constant(double value)
+{
+	return Width<V>::constant(value);
+}
 
 } // namespace hexmembrane

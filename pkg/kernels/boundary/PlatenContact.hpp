@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "kernels/base/Vec3.hpp"
+#include "kernels/boundary/BoundaryShape.hpp"
 
 #include <cmath>
 
@@ -94,5 +94,23 @@ inline Vec3 platenHalfExtent(const SolidCylinder& solid)
 	}
 	return half;
 }
+
+/// A platen as a boundary of the compact tier.
+struct PlatenBoundary {
+	SolidCylinder solid;
+
+	BoundaryTouch touch(const Place& sphere) const
+	{
+		const PlatenContact found = platenContact(solid, sphere.centre, sphere.radius);
+		return {found.penetration, found.normal, found.point};
+	}
+	bool near(const Place& sphere, double gap) const { return platenContact(solid, sphere.centre, sphere.radius + gap).penetration >= 0; }
+	/// Way of the centre, and of the rim as the axis tilts and sizes change.
+	double wayFrom(const PlatenBoundary& then) const
+	{
+		return (solid.centre - then.solid.centre).norm() + (solid.axis - then.solid.axis).norm() * std::hypot(solid.radius, solid.halfHeight) +
+		       std::abs(solid.radius - then.solid.radius) + std::abs(solid.halfHeight - then.solid.halfHeight);
+	}
+};
 
 } // namespace hexmembrane

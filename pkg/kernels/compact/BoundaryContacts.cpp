@@ -7,27 +7,27 @@
 
 namespace hexmembrane {
 
-bool BoundaryContacts::restore(int sphere, const ContactMemory& memory, unsigned char bit)
+bool BoundaryContacts::restore(int sphere, const Contact& contact)
 {
 	const auto found = std::lower_bound(spheres.begin(), spheres.end(), sphere);
 	if (found == spheres.end() || *found != sphere) return false;
-	store.put(int(found - spheres.begin()), memory, bit);
+	store.put(int(found - spheres.begin()), contact);
 	return true;
 }
 
-void BoundaryContacts::rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<Frictions>& frictions, const LawOfSphere& law)
+void BoundaryContacts::rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfSphere& springs)
 {
 	BoundaryContacts old;
 	old.spheres.swap(spheres);
 	std::swap(old.store, store);
 
 	spheres = std::move(near);
-	store.start(spheres.size(), frictions);
-	for (std::size_t c = 0; c < spheres.size(); ++c) store.setLaw(int(c), law(spheres[c]));
-	old.forEachTouching([&](int i, const ContactMemory& memory, unsigned char bit) { restore(newIndex[i], memory, bit); });
+	store.start(spheres.size(), kinds);
+	for (std::size_t c = 0; c < spheres.size(); ++c) store.setSprings(int(c), springs(spheres[c]));
+	old.forEachTouching([&](int i, const Contact& contact) { restore(newIndex[i], contact); });
 }
 
-void BoundaryContacts::sweep(int from, int to, const FlatBoundary& boundary, const std::vector<Place>& places, const std::vector<Motion>& motions,
+void BoundaryContacts::sweep(int from, int to, const Boundary& boundary, const std::vector<Place>& places, const std::vector<Motion>& motions,
                              std::vector<Load>& loads, double dt, BoundaryLoad& received)
 {
 	const auto first = std::lower_bound(spheres.begin(), spheres.end(), from), last = std::lower_bound(first, spheres.end(), to);
@@ -41,18 +41,18 @@ double BoundaryContacts::stiffness(const Vec3& along) const
 	double sum = 0;
 	for (std::size_t c = 0; c < spheres.size(); ++c) {
 		if (!store.bits[c]) continue;
-		const PackedContact& contact = store.contacts[c];
-		const double cosine = contact.normal.dot(along), square = cosine * cosine;
-		sum += contact.kn * square + contact.ks * (1 - square);
+		const StoredContact<double>& contact = store.contacts[c];
+		const double cosine = contact.memory.normal.dot(along), square = cosine * cosine;
+		sum += contact.springs.kn * square + contact.springs.ks * (1 - square);
 	}
 	return sum;
 }
 
-double BoundaryContacts::energy(const FlatBoundary& boundary, const std::vector<Place>& places) const
+double BoundaryContacts::energy(const Boundary& boundary, const std::vector<Place>& places) const
 {
 	double sum = 0;
-	forEachTouching([&](int i, const ContactMemory& memory, unsigned char) {
-		sum += contactEnergy(memory.law, memory.law.kn * boundary.touch(places[i]).u, memory.shear, memory.moment);
+	forEachTouching([&](int i, const Contact& contact) {
+		sum += contactEnergy(contact.law, contact.law.kn * boundary.shape->touch(places[i]).overlap, contact.memory.shear, contact.memory.moment);
 	});
 	return sum;
 }

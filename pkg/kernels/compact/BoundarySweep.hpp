@@ -7,7 +7,7 @@ namespace hexmembrane {
 
 /// The arrays of a sweep over the spheres near a boundary, see BoundaryContacts::sweep.
 struct BoundarySweep {
-	const FlatBoundary& boundary;
+	const Boundary& boundary;
 	const int* spheres;
 	ContactStore* store;
 	const Place* places;
@@ -17,7 +17,7 @@ struct BoundarySweep {
 	double dt;
 };
 
-/// One step of the contacts begin .. end - 1, four at a time as in PairSweep.hpp; what the boundary receives is added to `received`.
+/// One step of the contacts begin .. end - 1, see Sweep.hpp; what the boundary receives is added to `received`.
 void sweepBoundary(const BoundarySweep& sweep, BoundaryLoad& received);
 
 } // namespace hexmembrane

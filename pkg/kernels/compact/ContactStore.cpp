@@ -3,37 +3,28 @@
 
 namespace hexmembrane {
 
-void ContactStore::start(std::size_t count, const std::vector<Frictions>& table)
+void ContactStore::start(std::size_t count, const std::vector<PairKind<double>>& kindTable)
 {
-	contacts.resize(count);
-	for (PackedContact& contact : contacts) contact = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), 0, 0, 0};
+	contacts.assign(count, {noMemory(), {0, 0, 0}});
 	bits.assign(count, 0);
 	kinds.assign(count, 0);
-	frictions = table;
+	table = kindTable;
 	strengths.clear();
 }
 
-void ContactStore::put(int p, const ContactMemory& memory, unsigned char bit)
+void ContactStore::put(int p, const Contact& contact)
 {
-	contacts[p].shear = memory.shear;
-	contacts[p].moment = memory.moment;
-	contacts[p].normal = memory.normal;
-	bits[p] = bit;
-	if (!(bit & contactBonded)) return;
-	if (strengths.empty()) strengths.resize(size());
-	strengths[p] = {memory.law.tensileStrength, memory.law.shearStrength};
+	contacts[p].memory = withoutLostSprings(contact.memory, lawOf(contacts[p].springs, table[kinds[p]]));
+	bits[p] = contact.bits;
+	if (!contact.bonded()) return;
+	if (strengths.empty()) strengths.resize(size(), {0, 0});
+	strengths[p] = contact.strengths();
 }
 
-ContactMemory ContactStore::get(int p) const
+Contact ContactStore::get(int p) const
 {
-	const PackedContact& c = contacts[p];
-	const Frictions& f = frictions[kinds[p]];
-	ContactMemory memory{c.shear, c.moment, c.normal, {c.kn, c.ks, f.sliding, c.ks * c.lever * c.lever, f.rolling * c.lever, 0, 0}};
-	if (!strengths.empty()) {
-		memory.law.tensileStrength = strengths[p][0];
-		memory.law.shearStrength = strengths[p][1];
-	}
-	return memory;
+	const BondStrengths bond = strengths.empty() ? BondStrengths{0, 0} : strengths[p];
+	return {contacts[p].memory, {lawOf(contacts[p].springs, table[kinds[p]]), bond.tension, bond.shear}, bits[p]};
 }
 
 } // namespace hexmembrane

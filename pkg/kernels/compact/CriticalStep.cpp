@@ -15,27 +15,25 @@ CriticalStep::CriticalStep(const SphereAssembly& flat) : grains(flat.grains())
 		inverseMass.push_back(moves ? 1 / flat.mass[i] : 0);
 		inverseInertia.push_back(moves ? 1 / flat.inertia[i] : 0);
 	}
-	flat.contacts.forEachTouching([&](int i, int j, const ContactMemory& memory, unsigned char) {
+	flat.contacts.forEachTouching([&](int i, int j, const Contact& contact) {
 		const Place &a = flat.places[i], &b = flat.places[j];
 		const Vec3 branch = b.centre - a.centre, normal = branch.normalized();
 		const double u = a.radius + b.radius - branch.norm();
-		add(i, j, normal, (a.radius - 0.5 * u) * normal, -(b.radius - 0.5 * u) * normal, memory.law.kn, memory.law.friction > 0 ? memory.law.ks : 0,
-		    memory.law.kr);
+		add(i, j, normal, (a.radius - 0.5 * u) * normal, -(b.radius - 0.5 * u) * normal, stickingSprings(contact.law));
 	});
-	flat.smooth.forEachTouching(flat.places,
-	                            [&](int i, int j, double kn, double, const Vec3& normal) { add(i, j, normal, Vec3::Zero(), Vec3::Zero(), kn, 0, 0); });
+	flat.smooth.forEachTouching(
+	        flat.places, [&](int i, int j, double kn, double, const Vec3& normal) { add(i, j, normal, Vec3::Zero(), Vec3::Zero(), {kn, 0, 0, 0, 0}); });
 	for (std::size_t b = 0; b < flat.boundaries.size(); ++b)
-		flat.boundaryContacts[b].forEachTouching([&](int i, const ContactMemory& memory, unsigned char) {
-			const auto touch = flat.boundaries[b].touch(flat.places[i]);
-			add(i, -1, -touch.normal, touch.point - flat.places[i].centre, Vec3::Zero(), memory.law.kn, memory.law.friction > 0 ? memory.law.ks : 0,
-			    memory.law.kr);
+		flat.boundaryContacts[b].forEachTouching([&](int i, const Contact& contact) {
+			const BoundaryTouch touch = flat.boundaries[b].shape->touch(flat.places[i]);
+			add(i, -1, -touch.normal, touch.point - flat.places[i].centre, Vec3::Zero(), stickingSprings(contact.law));
 		});
 }
 
 void CriticalStep::addBond(int first, int second, const Vec3& branch, double kn, double ks)
 {
 	const Vec3 normal = branch.normalized();
-	add(grains + first, grains + second, normal, 0.5 * branch, -0.5 * branch, kn, ks, 0);
+	add(grains + first, grains + second, normal, 0.5 * branch, -0.5 * branch, {kn, ks, 0, 0, 0});
 }
 
 double CriticalStep::compute(double tolerance, int most) const
@@ -74,8 +72,8 @@ double CriticalStep::compute(double tolerance, int most) const
 				bend += w[s.j];
 			}
 			const double along = s.normal.dot(slide);
-			const Vec3 force = s.kn * along * s.normal + s.ks * (slide - along * s.normal); // on i, pulling it after j
-			const Vec3 moment = s.kr * (bend - s.normal.dot(bend) * s.normal);
+			const Vec3 force = s.law.kn * along * s.normal + s.law.ks * (slide - along * s.normal); // on i, pulling it after j
+			const Vec3 moment = s.law.kr * (bend - s.normal.dot(bend) * s.normal);
 			f[s.i] += force;
 			t[s.i] += s.arm1.cross(force) + moment;
 			if (s.j < 0) continue;

@@ -20,11 +20,11 @@ private:
 	struct Spring {
 		int i, j; ///< j < 0: a boundary
 		Vec3 normal, arm1, arm2;
-		double kn, ks, kr;
+		LinearLaw<double> law;
 	};
-	void add(int i, int j, const Vec3& normal, const Vec3& arm1, const Vec3& arm2, double kn, double ks, double kr)
+	void add(int i, int j, const Vec3& normal, const Vec3& arm1, const Vec3& arm2, const LinearLaw<double>& law)
 	{
-		springs.push_back({i, j, normal, arm1, arm2, kn, ks, kr});
+		springs.push_back({i, j, normal, arm1, arm2, law});
 	}
 
 	std::vector<Spring> springs;

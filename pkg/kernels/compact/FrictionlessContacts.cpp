@@ -74,10 +74,10 @@ void FrictionlessContacts::sweep(int from, int to, const std::vector<Place>& pla
 	sweepRows(from, std::min(to, firstParticle), places.data(), loads.data());
 }
 
-HEXMEMBRANE_WIDEST void FrictionlessContacts::gatherRows(int from, int to, Push* onParticle) const
+HEXMEMBRANE_WIDEST void FrictionlessContacts::gatherRows(int from, int to, PaddedForce* onParticle) const
 {
 	const int* const at = place.data();
-	const Push* const pushes = forces.data();
+	const PaddedForce* const pushes = forces.data();
 	for (int m = from; m < to; ++m) {
 		Lanes sum = lanes(0);
 		for (int q = particleStart[m]; q < particleStart[m + 1]; ++q) sum += load4(pushes[at[q]].force.data());
@@ -85,7 +85,7 @@ HEXMEMBRANE_WIDEST void FrictionlessContacts::gatherRows(int from, int to, Push*
 	}
 }
 
-void FrictionlessContacts::gather(int from, int to, std::vector<Push>& onParticle) const
+void FrictionlessContacts::gather(int from, int to, std::vector<PaddedForce>& onParticle) const
 {
 	gatherRows(std::max(from, firstParticle) - firstParticle, to - firstParticle, onParticle.data());
 }

@@ -24,7 +24,7 @@ public:
 	/// Adds what the particles do to the grains from .. to - 1 to `loads`.
 	void sweep(int from, int to, const std::vector<Place>& places, std::vector<Load>& loads);
 	/// Writes what the grains do to the particles from .. to - 1 (their indices among all spheres) to `onParticle`, when all grains are swept.
-	void gather(int from, int to, std::vector<Push>& onParticle) const;
+	void gather(int from, int to, std::vector<PaddedForce>& onParticle) const;
 
 	double energy(const std::vector<Place>& places) const;
 	/// Calls visit(grain, particle, kn, overlap, normal) for every touching pair; normal from grain to particle.
@@ -43,12 +43,12 @@ public:
 
 private:
 	void sweepRows(int from, int to, const Place* places, Load* loads);
-	void gatherRows(int from, int to, Push* onParticle) const;
+	void gatherRows(int from, int to, PaddedForce* onParticle) const;
 
 	int firstParticle = 0;
 	std::vector<int> start, length, other; ///< by grain, each row filled up to fours
 	std::vector<double> kn;
-	std::vector<Push> forces;              ///< on the particle
+	std::vector<PaddedForce> forces;       ///< on the particle
 	std::vector<int> particleStart, place; ///< by particle: where its pairs stand
 };
 

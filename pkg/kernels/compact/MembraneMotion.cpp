@@ -4,12 +4,11 @@
 #include "kernels/base/Lanes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace hexmembrane {
 
-MembraneMotion::MembraneMotion(const HexStencil& s, int rows) : velocity(s.perRing, s.rings), stencil(s), oRings(rows), total(s.perRing, s.rings) {}
+MembraneMotion::MembraneMotion(const HexStencil& s) : stencil(s), total(s.perRing, s.rings), freeRowsOf(s.rings, -1) {}
 
 namespace {
 
@@ -112,85 +111,118 @@ HEXMEMBRANE_WIDEST double fastestSquared(int n, const double* x, const double* y
 
 } // namespace
 
-void MembraneMotion::giveVelocities(Motion* motions) const
+void MembraneMotion::setBlocked(const std::vector<unsigned char>& bits)
+{
+	const int n = stencil.perRing;
+	freeRows.clear();
+	freeRowsOf.assign(stencil.rings, -1);
+	for (int k = 0; k < stencil.rings; ++k) {
+		const auto from = bits.begin() + k * n;
+		if (std::all_of(from, from + n, [](unsigned char b) { return b == 0; })) continue;
+		freeRowsOf[k] = int(freeRows.size());
+		freeRows.emplace_back();
+		for (int component = 0; component < 6; ++component)
+			for (int i = 0; i < n; ++i) freeRows.back()[component].push_back(from[i] >> component & 1 ? 0 : 1);
+	}
+}
+
+const double* MembraneMotion::accelerating(int k, int component, const double* force, std::vector<double>& kept) const
+{
+	if (isFree(k)) return force;
+	const std::vector<double>& free = freeRows[freeRowsOf[k]][component];
+	kept.resize(stencil.perRing);
+	for (int i = 0; i < stencil.perRing; ++i) kept[i] = free[i] * force[i];
+	return kept.data();
+}
+
+void MembraneMotion::giveVelocities(const PaddedRings& velocity, Motion* motions) const
 {
 	for (int k = 0; k < stencil.rings; ++k)
 		for (int i = 0; i < stencil.perRing; ++i) motions[stencil.at(k, i)].velocity = velocity.get(k, i);
 }
 
-int MembraneMotion::move(double dt, double damping, double limit, const PaddedRings& bonds, std::vector<Term>& terms, const Contacts& contacts,
-                         PaddedRings& position, bool energies, int threads)
+void MembraneMotion::addForces(int k, const std::vector<Term>& terms, const Contacts& contacts)
+{
+	const int n = stencil.perRing;
+	toRows(n, contacts.onParticle[k * n].force.data(), total.row(0, k), total.row(1, k), total.row(2, k));
+	// those of this ring that more than frictionless contacts act on
+	const auto from = std::lower_bound(contacts.loaded.begin(), contacts.loaded.end(), contacts.grains + k * n);
+	for (auto sphere = from; sphere != contacts.loaded.end() && *sphere < contacts.grains + (k + 1) * n; ++sphere) {
+		const int m = *sphere - contacts.grains;
+		total.set(k, m - k * n, contacts.onParticle[m].force + contacts.loads[m].force);
+	}
+	for (const Term& term : terms)
+		if (term.first <= k && k <= term.last)
+			for (int a = 0; a < 3; ++a) addRow(n, term.force->row(a, k), total.row(a, k));
+}
+
+int MembraneMotion::move(double dt, double damping, double limit, std::vector<Term>& terms, std::vector<Grip>& grips, const Contacts& contacts,
+                         PaddedRings& position, PaddedRings& velocity, bool energies, int threads)
 {
 	const int n = stencil.perRing, rings = stencil.rings;
 	// one slot a ring, summed in their order: the same bits for any number of threads
 	std::vector<double> square(rings), kineticPart(rings, 0.), dampedPart(rings, 0.);
-	std::vector<Powers> oRingPart(rings, Powers{0, 0}), workPart(rings, Powers{0, 0});
-	std::vector<int> workOf(rings, -1);
+	std::vector<Powers> termPart(rings * terms.size(), Powers{0, 0});
+	std::vector<Grip*> gripOf(rings, nullptr);
+	for (Grip& grip : grips) gripOf[grip.ring] = &grip;
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
 	for (int k = 0; k < rings; ++k) {
-		toRows(n, contacts.onParticle[k * n].force.data(), total.row(0, k), total.row(1, k), total.row(2, k));
-		// those of this ring that more than smooth contacts act on
-		const auto from = std::lower_bound(contacts.loaded.begin(), contacts.loaded.end(), contacts.grains + k * n);
-		const auto to = std::lower_bound(from, contacts.loaded.end(), contacts.grains + (k + 1) * n);
-		for (auto sphere = from; sphere != to; ++sphere) {
-			const int m = *sphere - contacts.grains, i = m - k * n;
-			total.set(k, i, contacts.onParticle[m].force + contacts.loads[m].force);
-		}
-		std::array<const double*, 3> worked{};
-		int& workedBy = workOf[k];
-		for (int a = 0; a < 3; ++a) addRow(n, bonds.row(a, k), total.row(a, k));
-		for (std::size_t t = 0; t < terms.size(); ++t) {
-			if (!terms[t].force || k < terms[t].first || k > terms[t].last) continue;
-			workedBy = int(t);
-			for (int a = 0; a < 3; ++a) {
-				worked[a] = terms[t].force->row(a, k);
-				addRow(n, worked[a], total.row(a, k));
-			}
-		}
+		addForces(k, terms, contacts);
+		std::vector<double> kept;
 		if (energies)
 			for (int a = 0; a < 3; ++a) {
 				kineticPart[k] += 0.5 * mass * dot(n, velocity.row(a, k), velocity.row(a, k));
-				if (!isORing(k)) dampedPart[k] += damping * dt * absoluteDot(n, velocity.row(a, k), total.row(a, k));
+				if (!gripOf[k]) dampedPart[k] += damping * dt * absoluteDot(n, velocity.row(a, k), accelerating(k, a, total.row(a, k), kept));
 			}
-		if (isORing(k)) {
-			const Vec3& told = k < oRings ? below : above;
-			for (int a = 0; a < 3; ++a) {
-				double* v = velocity.row(a, k);
-				double* x = position.row(a, k);
-				const double* f = total.row(a, k);
+		// the work of the last term that acts here comes with the motion, that of others by a loop of its own
+		int fused = -1;
+		for (int t = 0; t < int(terms.size()); ++t)
+			if (terms[t].worked && terms[t].first <= k && k <= terms[t].last) fused = t;
+		const auto addOthers = [&](double Powers::* part) {
+			for (int t = 0; t < fused; ++t)
+				if (terms[t].worked && terms[t].first <= k && k <= terms[t].last)
+					for (int a = 0; a < 3; ++a)
+						termPart[k * terms.size() + t].*part += dot(n, terms[t].force->row(a, k), velocity.row(a, k));
+		};
+		addOthers(&Powers::before);
+		for (int a = 0; a < 3; ++a) {
+			double *v = velocity.row(a, k), *x = position.row(a, k);
+			const double* f = total.row(a, k);
+			if (Grip* grip = gripOf[k]) {
+				const double told = grip->velocity[a];
 				for (int i = 0; i < n; ++i) {
-					// the O-ring holds against what acts, and brings the particle to its velocity
-					oRingPart[k].before += 0.5 * (mass * (told[a] - v[i]) * (v[i] + told[a]) - dt * f[i] * v[i]);
-					oRingPart[k].after -= 0.5 * dt * f[i] * told[a];
-					v[i] = told[a];
-					x[i] += dt * told[a];
+					grip->work.before += 0.5 * (mass * (told - v[i]) * (v[i] + told) - dt * f[i] * v[i]);
+					grip->work.after -= 0.5 * dt * f[i] * told;
+					v[i] = told;
+					x[i] += dt * told;
 				}
+				continue;
 			}
-		} else
-			for (int a = 0; a < 3; ++a) {
-				const double* f = total.row(a, k);
-				const Powers power = moveRow(n, dt, damping, mass, f, workedBy < 0 ? f : worked[a], velocity.row(a, k), position.row(a, k));
-				workPart[k].before += 0.5 * dt * power.before;
-				workPart[k].after += 0.5 * dt * power.after;
-			}
+			const double* worked = fused < 0 ? f : terms[fused].force->row(a, k);
+			const Powers power = moveRow(n, dt, damping, mass, accelerating(k, a, f, kept), worked, v, x);
+			if (fused < 0) continue;
+			termPart[k * terms.size() + fused].before += power.before;
+			termPart[k * terms.size() + fused].after += power.after;
+		}
+		addOthers(&Powers::after);
 		position.wrap(k);
+		velocity.wrap(k);
 		square[k] = fastestSquared(n, velocity.row(0, k), velocity.row(1, k), velocity.row(2, k));
 		fromRows(n, position.row(0, k), position.row(1, k), position.row(2, k), contacts.places[k * n].centre.data());
-		for (auto sphere = from; sphere != to; ++sphere)
+		const auto from = std::lower_bound(contacts.loaded.begin(), contacts.loaded.end(), contacts.grains + k * n);
+		for (auto sphere = from; sphere != contacts.loaded.end() && *sphere < contacts.grains + (k + 1) * n; ++sphere)
 			contacts.motions[*sphere - contacts.grains].velocity = velocity.get(k, *sphere - contacts.grains - k * n);
 	}
 	double fastest2 = 0;
-	kinetic = oRingBefore = oRingAfter = 0;
-	for (Term& term : terms) term.before = term.after = 0;
+	kinetic = 0;
+	for (Term& term : terms) term.work = {};
 	int lost = -1;
 	for (int k = 0; k < rings; ++k) {
 		kinetic += kineticPart[k];
 		dampedWork += dampedPart[k];
-		oRingBefore += oRingPart[k].before;
-		oRingAfter += oRingPart[k].after;
-		if (workOf[k] >= 0) {
-			terms[workOf[k]].before += workPart[k].before;
-			terms[workOf[k]].after += workPart[k].after;
+		for (std::size_t t = 0; t < terms.size(); ++t) {
+			terms[t].work.before += 0.5 * dt * termPart[k * terms.size() + t].before;
+			terms[t].work.after += 0.5 * dt * termPart[k * terms.size() + t].after;
 		}
 		if (lost < 0 && !(square[k] * dt * dt < limit * limit))
 			for (int i = 0; i < n && lost < 0; ++i)
@@ -201,17 +233,19 @@ int MembraneMotion::move(double dt, double damping, double limit, const PaddedRi
 	return lost;
 }
 
-int MembraneMotion::moveSpins(double dt, double damping, double inertia, const PaddedRings& bondTorque, const Load* loads, PaddedRings& spin, Motion* motions,
-                              bool energies)
+int MembraneMotion::moveSpins(double dt, double damping, double inertia, const std::vector<const PaddedRings*>& torques, const Load* loads, PaddedRings& spin,
+                              Motion* motions, bool energies)
 {
 	const int n = stencil.perRing;
 	int lost = -1;
-	for (int k = oRings; k < stencil.rings - oRings; ++k) {
+	for (int k = 0; k < stencil.rings; ++k) {
 		for (int i = 0; i < n; ++i) {
 			const int m = k * n + i;
-			const Vec3 torque = bondTorque.get(k, i) + loads[m].torque, before = spin.get(k, i);
-			Vec3 after;
+			Vec3 torque = loads[m].torque, after;
+			for (const PaddedRings* rows : torques) torque += rows->get(k, i);
+			const Vec3 before = spin.get(k, i);
 			for (int a = 0; a < 3; ++a) {
+				if (!isFree(k)) torque[a] *= freeRows[freeRowsOf[k]][3 + a][i];
 				const double acceleration = torque[a] / inertia, power = acceleration * (before[a] + 0.5 * dt * acceleration);
 				after[a] = before[a] + dt * acceleration * (1 - damping * ((power > 0) - (power < 0)));
 			}

@@ -15,22 +15,16 @@ int PairContacts::find(int i, int j) const
 	return found != to && *found == j ? int(found - pairs.other.begin()) : -1;
 }
 
-bool PairContacts::restore(int i, int j, const ContactMemory& memory, unsigned char bit)
+bool PairContacts::restore(int i, int j, const Contact& contact)
 {
 	const bool swapped = i > j;
 	const int p = swapped ? find(j, i) : find(i, j);
 	if (p < 0) return false;
-	ContactMemory turned = memory;
-	if (swapped) { // what the second body feels is now what the first one felt
-		turned.shear = -memory.shear;
-		turned.moment = -memory.moment;
-		turned.normal = -memory.normal;
-	}
-	store.put(p, turned, bit);
+	store.put(p, swapped ? contact.swapped() : contact);
 	return true;
 }
 
-void PairContacts::rebuild(NearPairs found, const std::vector<int>& newIndex, const std::vector<Frictions>& frictions, const LawOfPair& law)
+void PairContacts::rebuild(NearPairs found, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfPair& springs)
 {
 	PairContacts old;
 	std::swap(old.pairs, pairs);
@@ -38,15 +32,15 @@ void PairContacts::rebuild(NearPairs found, const std::vector<int>& newIndex, co
 
 	pairs = std::move(found);
 	first.resize(pairs.other.size());
-	store.start(pairs.other.size(), frictions);
+	store.start(pairs.other.size(), kinds);
 	const long rows = long(pairs.start.size()) - 1;
 #pragma omp parallel for schedule(static)
 	for (long i = 0; i < rows; ++i)
 		for (int p = pairs.start[i]; p < pairs.start[i + 1]; ++p) {
 			first[p] = int(i);
-			store.setLaw(p, law(int(i), pairs.other[p]));
+			store.setSprings(p, springs(int(i), pairs.other[p]));
 		}
-	old.forEachTouching([&](int i, int j, const ContactMemory& memory, unsigned char bit) { restore(newIndex[i], newIndex[j], memory, bit); });
+	old.forEachTouching([&](int i, int j, const Contact& contact) { restore(newIndex[i], newIndex[j], contact); });
 }
 
 void PairContacts::divide(const ThreadPartition& runs)
@@ -83,9 +77,9 @@ void PairContacts::addSpills(const ThreadPartition& runs, int t, std::vector<Loa
 double PairContacts::energy(const std::vector<Place>& places) const
 {
 	double sum = 0;
-	forEachTouching([&](int i, int j, const ContactMemory& memory, unsigned char) {
+	forEachTouching([&](int i, int j, const Contact& contact) {
 		const double u = places[i].radius + places[j].radius - (places[j].centre - places[i].centre).norm();
-		sum += contactEnergy(memory.law, memory.law.kn * u, memory.shear, memory.moment);
+		sum += contactEnergy(contact.law, contact.law.kn * u, contact.memory.shear, contact.memory.moment);
 	});
 	return sum;
 }

@@ -5,6 +5,7 @@
 #include "kernels/compact/ThreadPartition.hpp"
 #include "kernels/base/CellGrid.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -16,12 +17,12 @@ namespace hexmembrane {
 /// owner adds the spills in the order of the threads: the same bits for the same number of threads.
 class PairContacts {
 public:
-	using LawOfPair = std::function<LawOfKind(int, int)>;
+	using OfPair = std::function<SpringsOfKind(int, int)>;
 
 	/// Takes over a new list. Memories of contacts that touch in the old list go to their pairs in the new one (the others are dropped: a touching pair is
-	/// always in a new list); `law` makes the parameters of all pairs.
-	/// \param frictions by kind \param newIndex where each sphere of the old numbering stands in the new one
-	void rebuild(NearPairs found, const std::vector<int>& newIndex, const std::vector<Frictions>& frictions, const LawOfPair& law);
+	/// always in a new list); `springs` makes the parameters of all pairs.
+	/// \param kinds parameters by kind \param newIndex where each sphere of the old numbering stands in the new one
+	void rebuild(NearPairs found, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfPair& springs);
 
 	/// Where the pairs of each sphere begin, one more entry than spheres.
 	const std::vector<int>& rowStart() const { return pairs.start; }
@@ -35,13 +36,13 @@ public:
 
 	/// Elastic energy of all contacts (J).
 	double energy(const std::vector<Place>& places) const;
-	/// Calls visit(i, j, memory, bits) for every touching pair.
+	/// Calls visit(i, j, contact) for every touching pair.
 	template <typename Visit>
 	void forEachTouching(Visit&& visit) const
 	{
 		for (std::size_t i = 0; i + 1 < pairs.start.size(); ++i)
 			for (int p = pairs.start[i]; p < pairs.start[i + 1]; ++p)
-				if (store.bits[p]) visit(int(i), pairs.other[p], store.get(p), store.bits[p]);
+				if (store.bits[p]) visit(int(i), pairs.other[p], store.get(p));
 	}
 	/// Calls visit(i, j) for every listed pair.
 	template <typename Visit>
@@ -49,8 +50,9 @@ public:
 	{
 		for (std::size_t p = 0; p < first.size(); ++p) visit(first[p], pairs.other[p]);
 	}
-	/// Puts a memory into the list; its law's parameters but the strengths are those that the list has. \return false when the pair is not in it
-	bool restore(int i, int j, const ContactMemory& memory, unsigned char bit);
+	/// Puts a contact into the list; parameters but the strengths of its bond are those that the list has. \return false when the pair is not in it
+	bool restore(int i, int j, const Contact& contact);
+	bool has(int i, int j) const { return find(std::min(i, j), std::max(i, j)) >= 0; }
 
 	int size() const { return int(pairs.other.size()); }
 

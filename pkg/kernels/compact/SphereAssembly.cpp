@@ -15,7 +15,7 @@ namespace hexmembrane {
 
 void SphereAssembly::setSkin(double skin)
 {
-	requirePositive("CompactLoop.skin", skin, "m");
+	requirePositive("skin", skin, "m");
 	if (skin != gap) listed.clear(); // lists are made anew; what contacts remember moves over
 	gap = skin;
 }
@@ -47,15 +47,13 @@ void SphereAssembly::setSpheres(const std::vector<Sphere>& all, int count)
 void SphereAssembly::setMaterials(const std::vector<ContactMaterial>& table)
 {
 	if (table == materials) return;
-	const bool first = materials.empty();
-	if (table.size() > 255)
-		reject("CompactLoop.materials", double(table.size()), "too many", "255 materials at most: bodies with the same parameters can share one");
+	if (table.size() > 255) reject("materials", double(table.size()), "too many", "255 materials at most: bodies with the same parameters can share one");
 	materials = table;
-	frictions.clear();
+	kinds.clear();
 	for (const ContactMaterial& a : table)
-		for (const ContactMaterial& b : table) frictions.push_back({std::min(a.friction, b.friction), std::min(a.rollingFriction, b.rollingFriction)});
-	if (first || listed.empty()) return;
-	// laws are made with the lists; friction may have come or gone, and with it what a list holds
+		for (const ContactMaterial& b : table) kinds.push_back(kindOf(a, b));
+	if (listed.empty()) return;
+	// springs are made with the lists; friction may have come or gone, and with it what a list holds
 	std::vector<int> same(places.size());
 	std::iota(same.begin(), same.end(), 0);
 	buildLists(same);
@@ -63,20 +61,17 @@ void SphereAssembly::setMaterials(const std::vector<ContactMaterial>& table)
 
 bool SphereAssembly::listsHold()
 {
-	if (listed.size() != places.size() || listedBoundaries.size() != boundaries.size()) return false;
+	if (listed.size() != places.size() || listedShapes.size() != boundaries.size()) return false;
 	if (travelled < 0.5 * gap) return true;
-	// the bound adds the fastest of every step, whoever it was: look how far each has really come
-	double furthest = 0;
+	// a sum of every step's largest way: look how far each sphere has really come
+	double way = 0;
 	const long count = long(places.size());
-#pragma omp parallel for schedule(static) reduction(max : furthest)
-	for (long i = 0; i < count; ++i) furthest = std::max(furthest, (places[i].centre - listed[i]).squaredNorm());
-	furthest = std::sqrt(furthest);
-	for (std::size_t b = 0; b < boundaries.size(); ++b) {
-		const auto &now = boundaries[b].solid, &then = listedBoundaries[b].solid;
-		furthest = std::max(furthest, (now.centre - then.centre).norm() + std::abs(now.radius - then.radius));
-	}
-	travelled = furthest;
-	// with little left the next measure would be due at once
+#pragma omp parallel for schedule(static) reduction(max : way)
+	for (long i = 0; i < count; ++i) way = std::max(way, (places[i].centre - listed[i]).squaredNorm());
+	way = std::sqrt(way);
+	for (std::size_t b = 0; b < boundaries.size(); ++b) way = std::max(way, boundaries[b].shape->wayFrom(*listedShapes[b]));
+	travelled = way;
+	// lists are made already at 0.4 of the skin: near half of it this measure would be due in every step
 	return travelled < 0.4 * gap;
 }
 
@@ -100,10 +95,15 @@ void SphereAssembly::sortGrains(std::vector<int>& newIndex)
 	grid.fill(centres);
 	const std::vector<int>& order = grid.order();
 	for (int i = 0; i < grainCount; ++i) newIndex[order[i]] = i;
+	permuteGrains(order);
+}
+
+void SphereAssembly::permuteGrains(const std::vector<int>& from)
+{
 	const auto permute = [&](auto& field) {
 		if (field.empty()) return;
 		auto before = field;
-		for (int i = 0; i < grainCount; ++i) field[i] = before[order[i]];
+		for (int i = 0; i < grainCount; ++i) field[i] = before[from[i]];
 	};
 	permute(id);
 	permute(places);
@@ -163,20 +163,6 @@ void SphereAssembly::findPairs(NearPairs& general, std::vector<FrictionlessConta
 		for (const auto& part : smoothParts) frictionless.insert(frictionless.end(), part.begin(), part.end());
 		for (const auto& part : extraParts) extra.insert(extra.end(), part.begin(), part.end());
 	}
-	if (bondedNeighbours) {
-		std::vector<Vec3> particles(listed.begin() + grainCount, listed.end());
-		std::vector<double> sizes;
-		Vec3 least = particles[0], most = particles[0];
-		for (int m = grainCount; m < all; ++m) {
-			sizes.push_back(places[m].radius);
-			least = least.cwiseMin(listed[m]);
-			most = most.cwiseMax(listed[m]);
-		}
-		const NearPairs own = findNearPairs(particles, sizes, gap, least, most);
-		for (int a = 0; a + 1 < int(own.start.size()); ++a)
-			for (int p = own.start[a]; p < own.start[a + 1]; ++p)
-				if (!bondedNeighbours(a, own.other[p])) extra.push_back({grainCount + a, grainCount + own.other[p]});
-	}
 	if (extra.empty()) return;
 	// particles' indices are above all grains': appended to a row they leave it ascending
 	std::sort(extra.begin(), extra.end());
@@ -196,29 +182,48 @@ void SphereAssembly::buildLists(const std::vector<int>& newIndex)
 	NearPairs general;
 	std::vector<FrictionlessContacts::Pair> frictionless;
 	findPairs(general, frictionless);
-	contacts.rebuild(std::move(general), newIndex, frictions, [this](int i, int j) { return lawOfKind(i, j); });
-	smooth.rebuild(frictionless, grainCount, spheres() - grainCount, [this](int i, int j) { return lawOf(i, j).kn; });
+	contacts.rebuild(std::move(general), newIndex, kinds, [this](int i, int j) { return springsOf(i, j); });
+	smooth.rebuild(frictionless, grainCount, spheres() - grainCount, [this](int i, int j) { return springsOf(i, j).springs.kn; });
 	runs = {};
 	loadsStale = true;
 	boundaryContacts.resize(boundaries.size());
 	for (std::size_t b = 0; b < boundaries.size(); ++b) {
 		std::vector<int> near;
 		for (int i = 0; i < spheres(); ++i)
-			if (listedBoundaries[b].near({listed[i], places[i].radius}, gap)) near.push_back(i);
-		boundaryContacts[b].rebuild(std::move(near), newIndex, frictions, [&](int i) { return lawOfKind(boundaries[b], i); });
+			if (listedShapes[b]->near({listed[i], places[i].radius}, gap)) near.push_back(i);
+		boundaryContacts[b].rebuild(std::move(near), newIndex, kinds, [&](int i) { return springsOf(boundaries[b], i); });
 	}
+}
+
+int SphereAssembly::nowhere() const
+{
+	for (std::size_t i = 0; i < places.size(); ++i)
+		if (!std::isfinite(places[i].centre.sum())) return id[i];
+	return -1;
 }
 
 void SphereAssembly::makeLists()
 {
+	const int lost = nowhere();
+	if (lost >= 0) reject("places", "not finite for sphere " + std::to_string(lost), "no list can be made", "find out what sent it away");
 	std::vector<int> newIndex;
 	sortGrains(newIndex);
 	listed.resize(places.size());
 	for (std::size_t i = 0; i < places.size(); ++i) listed[i] = places[i].centre;
-	listedBoundaries = boundaries;
+	listedShapes = shapes();
 	travelled = 0;
 	buildLists(newIndex);
 	++made;
+}
+
+void SphereAssembly::continueLists(const std::vector<Vec3>& centres, const std::vector<std::shared_ptr<const BoundaryShape>>& shapesThen, double travelledSince)
+{
+	listed = centres;
+	listedShapes = shapesThen;
+	travelled = travelledSince;
+	std::vector<int> same(places.size());
+	std::iota(same.begin(), same.end(), 0);
+	buildLists(same);
 }
 
 void SphereAssembly::divide(int threads)
@@ -331,7 +336,7 @@ int SphereAssembly::moveGrains(double dt, double damping, bool energies, int thr
 		if (energies) kinetic += part.kinetic;
 		if (lost < 0 && part.lost < part.to) lost = id[part.lost];
 	}
-	noteSpeed(std::sqrt(fastest2), dt);
+	noteWay(std::sqrt(fastest2) * dt);
 	return lost;
 }
 

@@ -7,6 +7,7 @@
 #include "kernels/compact/ThreadPartition.hpp"
 #include "kernels/contact/ContactMaterial.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace hexmembrane {
@@ -33,18 +34,24 @@ public:
 	double skin() const { return gap; }
 	/// Parameters of all materials; contacts follow at once. A membrane particle that touches a grain without friction needs no memory.
 	void setMaterials(const std::vector<ContactMaterial>& table);
-	/// Pairs of membrane particles are left out of the lists, unless this is set: `bonded(a, b)` says which are neighbours in the membrane.
-	void setMembraneContacts(std::function<bool(int, int)> bonded) { bondedNeighbours = std::move(bonded); }
-
 	const ContactMaterial& materialOf(int index) const { return materials[index]; }
+	/// Law of a contact of two spheres, or of a sphere with boundary b, without a bond.
 	ContactLaw lawOf(int i, int j) const { return sphereLaw(materials[material[i]], materials[material[j]], places[i].radius, places[j].radius); }
+	ContactLaw boundaryLawOf(int b, int i) const { return boundaryLaw(materials[boundaries[b].material], materials[material[i]], places[i].radius); }
+
+	/// Whether a contact of these two has neither friction nor rolling resistance.
+	bool isSmooth(int i, int j) const { return normalOnly(kinds[kindOfPair(material[i], material[j])]); }
 
 	int spheres() const { return int(places.size()); }
 	int grains() const { return grainCount; }
 
 	/// Whether the lists hold every contact at the present positions. Measures how far spheres have moved when it must.
 	bool listsHold();
-	/// Sorts the grains and makes all lists anew; memories of contacts move over.
+	/// Id of a sphere whose place is not finite, -1: none.
+	int nowhere() const;
+	/// Gives the grains another order: the one at place i was at from[i] before. Lists are to be made anew.
+	void permuteGrains(const std::vector<int>& from);
+	/// Sorts the grains and makes all lists anew; memories of contacts move over. \throws FieldError for a sphere that is nowhere, before anything is changed
 	void makeLists();
 	/// Steps at which lists were made so far.
 	long listsMade() const { return made; }
@@ -59,13 +66,25 @@ public:
 	/// brakes it, x += dt v. Grains only.
 	/// \return id of a grain that moved half a skin or more, or is not finite, -1: none
 	int moveGrains(double dt, double damping, bool energies, int threads);
-	/// Counts motion of other spheres or boundaries, of this speed (m/s), against the skin.
-	void noteSpeed(double speed, double dt) { fastest = std::max(fastest, speed * dt); }
-	/// Ends a step: adds the largest way of it to what has been travelled.
+	/// Gives boundary b its present shape.
+	void moveBoundary(int b, std::shared_ptr<const BoundaryShape> shape)
+	{
+		noteWay(shape->wayFrom(*boundaries[b].shape));
+		boundaries[b].shape = std::move(shape);
+	}
+	std::vector<std::shared_ptr<const BoundaryShape>> shapes() const
+	{
+		std::vector<std::shared_ptr<const BoundaryShape>> all;
+		for (const Boundary& boundary : boundaries) all.push_back(boundary.shape);
+		return all;
+	}
+	/// Counts a way (m) of another sphere in this step against the skin.
+	void noteWay(double way) { furthest = std::max(furthest, way); }
+	/// Ends a step: adds the largest way of it to what has been travelled. A sum of every step's largest way: a bound of each sphere's own way.
 	void endStep()
 	{
-		travelled += fastest;
-		fastest = 0;
+		travelled += furthest;
+		furthest = 0;
 	}
 
 	// State: read and written by the caller between steps
@@ -77,11 +96,11 @@ public:
 	std::vector<unsigned char> fixed;
 	std::vector<Load> outside; ///< loads from elsewhere, held for the step; empty: none
 	std::vector<Vec3> turned;  ///< rotation of each grain since this was last zeroed (rad)
-	std::vector<FlatBoundary> boundaries;
+	std::vector<Boundary> boundaries;
 
 	// Results of computeLoads()
-	std::vector<Load> loads;      ///< on grains; on particles what contacts with memory and `outside` do
-	std::vector<Push> onParticle; ///< what frictionless contacts do to the membrane's particles (N)
+	std::vector<Load> loads;             ///< on grains; on particles what contacts with memory and `outside` do
+	std::vector<PaddedForce> onParticle; ///< what frictionless contacts do to the membrane's particles (N)
 	std::vector<BoundaryLoad> onBoundary;
 	SweepSums sums;        ///< of all steps since it was last reset
 	double dampedWork = 0; ///< taken by the local damping since it was last reset (J)
@@ -93,43 +112,41 @@ public:
 	std::vector<BoundaryContacts> boundaryContacts;
 
 	// What lists were made from: part of the state that is saved
-	std::vector<Vec3> listed; ///< centres
-	std::vector<FlatBoundary> listedBoundaries;
-	double travelled = 0; ///< upper bound of every sphere's way since (m)
-	/// Lists from `listed` and `listedBoundaries` without sorting: what makeLists() ends with, and what a loaded state begins with.
-	void buildLists(const std::vector<int>& newIndex);
+	std::vector<Vec3> listed;                                       ///< centres
+	std::vector<std::shared_ptr<const BoundaryShape>> listedShapes; ///< of the boundaries
+	double travelled = 0;                                           ///< upper bound of every sphere's way since (m)
+	/// The lists of a saved state: from the centres and shapes that it had made them from, without sorting.
+	void continueLists(const std::vector<Vec3>& centres, const std::vector<std::shared_ptr<const BoundaryShape>>& shapesThen, double travelledSince);
 
 	double elasticEnergy() const;
 
 private:
+	/// Lists from `listed` and `listedShapes`.
+	void buildLists(const std::vector<int>& newIndex);
 	void sortGrains(std::vector<int>& newIndex);
 	/// The division of the spheres among so many threads.
 	void divide(int threads);
 	void listLoaded();
 	void clearLoads(int from, int to, bool all);
-	LawOfKind lawOfKind(int i, int j) const { return {lawOf(i, j), material[i] * int(materials.size()) + material[j]}; }
-	LawOfKind lawOfKind(const FlatBoundary& boundary, int i) const
+	int kindOfPair(int a, int b) const { return a * int(materials.size()) + b; }
+	SpringsOfKind springsOf(int i, int j) const
 	{
-		return {boundaryLaw(materials[boundary.material], materials[material[i]], places[i].radius),
-		        boundary.material * int(materials.size()) + material[i]};
+		return {sphereSprings(materials[material[i]], materials[material[j]], places[i].radius, places[j].radius),
+		        kindOfPair(material[i], material[j])};
+	}
+	SpringsOfKind springsOf(const Boundary& boundary, int i) const
+	{
+		return {boundarySprings(materials[boundary.material], materials[material[i]], places[i].radius), kindOfPair(boundary.material, material[i])};
 	}
 	void findPairs(NearPairs& general, std::vector<FrictionlessContacts::Pair>& frictionless) const;
-	/// Whether a contact of these two has neither friction nor rolling resistance.
-	bool isSmooth(int i, int j) const
-	{
-		const ContactMaterial &a = materials[material[i]], &b = materials[material[j]];
-		return !(std::min(a.friction, b.friction) > 0) && !(std::min(a.rollingFriction, b.rollingFriction) > 0);
-	}
-
 	ThreadPartition runs; ///< of the present lists; none: to be made
 	int grainCount = 0;
 	std::vector<int> loaded;
 	bool loadsStale = true; ///< particles that are not in `loaded` may have a load
-	double gap = 0, fastest = 0;
+	double gap = 0, furthest = 0;
 	long made = 0;
 	std::vector<ContactMaterial> materials;
-	std::vector<Frictions> frictions; ///< of every pair of materials
-	std::function<bool(int, int)> bondedNeighbours;
+	std::vector<PairKind<double>> kinds; ///< of every pair of materials
 };
 
 } // namespace hexmembrane

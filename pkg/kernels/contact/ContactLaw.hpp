@@ -1,12 +1,14 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "kernels/base/Vec3.hpp"
+#include "kernels/base/Lanes.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
-/* Linear contact laws of PFC (Itasca, PFC documentation, contact models "linear", "rrlinear", "linearcbond"), one contact and one step at a time.
+/* Linear contact laws of PFC (Itasca, PFC documentation, contact models "linear", "rrlinear", "linearcbond"), one step at a time. What
+ * has a parameter V is written once for one contact (V = double) and for four (V = Lanes): YADE's law, the sweeps of the compact tier and the packer use it.
  *
  * Signs: the unit normal n points from body 1 to body 2; overlap u > 0 in contact, < 0 across a gap; displacement, rotation and velocity are those of body 2
  * relative to body 1; normal force N (> 0 in compression), shear force and moment act on body 2, their opposites on body 1. SI units.
@@ -44,13 +46,18 @@ inline Springs inSeries(const Springs& a, const Springs& b)
 	return {series(a.kn, b.kn), series(a.ks, b.ks)};
 }
 
-/// Parameters of a contact. Nothing is checked: who makes contacts checks.
-struct ContactLaw {
-	double kn;              ///< normal stiffness (N/m), > 0
-	double ks;              ///< shear stiffness (N/m), >= 0
-	double friction;        ///< coefficient mu (-), >= 0
-	double kr;              ///< rolling stiffness (N m/rad), >= 0; PFC: ks Rbar^2
-	double rollingArm;      ///< mu_r Rbar (m), >= 0: limit of the moment over the normal force
+/// Parameters of an unbonded contact. Nothing is checked: who makes contacts checks.
+template <class V>
+struct LinearLaw {
+	V kn;         ///< normal stiffness (N/m), > 0
+	V ks;         ///< shear stiffness (N/m), >= 0
+	V friction;   ///< coefficient mu (-), >= 0
+	V kr;         ///< rolling stiffness (N m/rad), >= 0; PFC: ks Rbar^2
+	V rollingArm; ///< mu_r Rbar (m), >= 0: limit of the moment over the normal force
+};
+
+/// The same of one contact, with the strengths of its bond.
+struct ContactLaw : LinearLaw<double> {
 	double tensileStrength; ///< of a bond (N), >= 0 or infinite; PFC: cb_tenf
 	double shearStrength;   ///< of a bond (N), >= 0 or infinite; PFC: cb_shearf
 };
@@ -64,15 +71,36 @@ struct ContactMotion {
 
 enum class BondBreak { none, tension, shear };
 
-/// What a step brought, apart from the loads themselves. Works (J) are those of the trapezoid rule, by which leapfrog's kinetic energy
-/// changes too: gain in elastic energy + works = sum of (load before + load after)/2 . displacement, to rounding, whatever the path.
+/// Energies (J) that left the contacts: by sliding, by rolling, by breaking bonds. Those of sliding and rolling are by the trapezoidal rule, by which leapfrog's
+/// kinetic energy changes too: gain in elastic energy + works = sum of (load before + load after)/2 . displacement, to rounding, whatever the path.
+struct ContactWorks {
+	double slip = 0; ///< dissipated by sliding, and what shear still held when the contact opened
+	double roll = 0; ///< the same of rolling
+	double bond = 0; ///< elastic energy set free by the break of a bond
+
+	/// Calls visit(name, value) for each; the names are those of YADE's energies.
+	template <class Self, class Visit>
+	static void forEach(Self& works, Visit&& visit)
+	{
+		visit("plastDissip", works.slip);
+		visit("rollDissip", works.roll);
+		visit("bondDissip", works.bond);
+	}
+	ContactWorks& operator+=(const ContactWorks& o)
+	{
+		slip += o.slip;
+		roll += o.roll;
+		bond += o.bond;
+		return *this;
+	}
+};
+
+/// What a step brought, apart from shear force and moment themselves.
 struct ContactStep {
-	double normal;     ///< N (N)
-	bool open;         ///< nothing is transmitted any more, nothing is remembered
-	BondBreak bond;    ///< what broke in this step
-	double slipWork;   ///< dissipated by sliding, and what shear still held when the contact opened
-	double rollWork;   ///< the same of rolling
-	double bondEnergy; ///< elastic energy set free by the break of a bond
+	double normal;  ///< N (N)
+	bool open;      ///< nothing is transmitted any more, nothing is remembered
+	BondBreak bond; ///< what broke in this step
+	ContactWorks works;
 };
 
 /// Velocity of body 2 relative to body 1 at the contact point; arms point from the centres to it (for spheres (R1-u/2) n and -(R2-u/2) n).
@@ -81,51 +109,21 @@ inline Vec3 relativeVelocity(const Vec3& velocity1, const Vec3& spin1, const Vec
 	return velocity2 + spin2.cross(arm2) - velocity1 - spin1.cross(arm1);
 }
 
-/// The part of v in the contact plane.
-inline Vec3 acrossNormal(const Vec3& v, const Vec3& normal) { return v - normal.dot(v) * normal; }
-
-/// How a contact turned during a step: rotation vectors (rad) of its normal and about its normal (mean spin of the two bodies).
-struct ContactTurn {
-	Vec3 tilt;
-	Vec3 twist;
-};
-
-inline ContactTurn contactTurn(const Vec3& previousNormal, const Vec3& normal, const Vec3& spin1, const Vec3& spin2, double dt)
+/// A remembered load turned with its contact, v + tilt x v, then v + twist x v: `tilt` is the rotation of the normal (rad), previous normal x normal, `twist` that
+/// about the previous normal, by the mean spin of the two bodies. First order: a step that turns by the angle a makes the load longer by a^2/2 at most and leaves
+/// a part a^2 of it along the normal. The same formula as YADE's ScGeom::rotate, so that a contact is the same in both tiers.
+template <class W>
+HEXMEMBRANE_INLINE W carried(const W& load, const W& tilt, const W& twist)
 {
-	return {previousNormal.cross(normal), 0.5 * dt * previousNormal.dot(spin1 + spin2) * previousNormal};
+	const W tilted = load - cross(load, tilt);
+	return tilted - cross(tilted, twist);
 }
-
-/// A remembered load turned with its contact, v + tilt x v, then v + twist x v. First order: a step that turns by the angle a makes the load longer by a^2/2 at
-/// most and leaves a part a^2 of it along the normal. The same formula as YADE's ScGeom::rotate, so that a contact is the same in both tiers.
-inline Vec3 carried(const Vec3& load, const ContactTurn& turn)
-{
-	const Vec3 tilted = load - load.cross(turn.tilt);
-	return tilted - tilted.cross(turn.twist);
-}
-
-/// Work that a spring of this stiffness loses when its trial load is cut down to `kept` while the load was `before` at the start of the step:
-/// (before+kept)/2 . (trial-kept)/stiffness, which is the work done on it by the trapezoid rule less its gain in elastic energy. PFC's definition.
-inline double cutWork(const Vec3& before, const Vec3& trial, const Vec3& kept, double stiffness) { return 0.5 * (before + kept).dot(trial - kept) / stiffness; }
 
 /// v, or v shortened to the length `limit` when it is longer.
 inline Vec3 cutTo(const Vec3& v, double limit)
 {
 	const double square = v.squaredNorm();
 	return square > limit * limit ? Vec3(limit / std::sqrt(square) * v) : v;
-}
-
-/// Elastic step of a load, then cut to the limit: load -> cutTo(load - stiffness displacement, limit). Returns the work dissipated (J).
-inline double loadAndCut(Vec3& load, const Vec3& displacement, double stiffness, double limit)
-{
-	const Vec3 trial = load - stiffness * displacement;
-	if (trial.squaredNorm() <= limit * limit) {
-		load = trial;
-		return 0;
-	}
-	const Vec3 kept = cutTo(trial, limit);
-	const double work = cutWork(load, trial, kept, stiffness);
-	load = kept;
-	return work;
 }
 
 /// Elastic energy of a load, |load|^2/(2 stiffness) (J); nothing for a spring that is not there.
@@ -135,6 +133,12 @@ inline double springEnergy(double squaredLoad, double stiffness) { return stiffn
 inline double contactEnergy(const ContactLaw& law, double normal, const Vec3& shear, const Vec3& moment)
 {
 	return springEnergy(normal * normal, law.kn) + springEnergy(shear.squaredNorm(), law.ks) + springEnergy(moment.squaredNorm(), law.kr);
+}
+
+/// The springs of a contact that sticks, as the critical time step counts them: one that friction can hold nothing of is none.
+inline LinearLaw<double> stickingSprings(const ContactLaw& law)
+{
+	return {law.kn, law.friction > 0 ? law.ks : 0, law.friction, law.rollingArm > 0 ? law.kr : 0, law.rollingArm};
 }
 
 /// PFC's two rules, tension first: tension above tensileStrength, shear force above shearStrength.
@@ -148,47 +152,146 @@ inline BondBreak bondBreak(const ContactLaw& law, double normal, const Vec3& she
 /// all forces; one in shear leaves them in compression, as far as friction holds (from then on the contact is an unbonded one), and takes them in tension.
 inline ContactStep advanceBond(const ContactLaw& law, const ContactMotion& motion, Vec3& shear, Vec3& moment, bool& bonded)
 {
-	ContactStep step{law.kn * motion.overlap, false, BondBreak::none, 0, 0, 0};
-	step.rollWork = springEnergy(moment.squaredNorm(), law.kr);
+	ContactStep step{law.kn * motion.overlap, false, BondBreak::none, {}};
+	step.works.roll = springEnergy(moment.squaredNorm(), law.kr);
 	moment = Vec3::Zero();
 	shear -= law.ks * motion.slide;
 	step.bond = bondBreak(law, step.normal, shear);
 	if (step.bond == BondBreak::none) return step;
 	bonded = false;
-	step.bondEnergy = springEnergy(shear.squaredNorm(), law.ks);
+	step.works.bond = springEnergy(shear.squaredNorm(), law.ks);
 	if (step.normal < 0) {
-		step.bondEnergy += springEnergy(step.normal * step.normal, law.kn);
+		step.works.bond += springEnergy(step.normal * step.normal, law.kn);
 		step.normal = 0;
 		step.open = true;
 		shear = Vec3::Zero();
 		return step;
 	}
 	shear = cutTo(shear, law.friction * step.normal);
-	step.bondEnergy -= springEnergy(shear.squaredNorm(), law.ks);
+	step.works.bond -= springEnergy(shear.squaredNorm(), law.ks);
 	return step;
 }
 
-/// One step of a contact. `shear` (N) and `moment` (N m) come already carried() into the present contact plane and go out advanced; `bonded` is cleared when a
-/// bond breaks. Not bonded:
+/// A step of the spring of shear or of rolling, first half: the trial load, and whether it is above its limit.
+template <class V>
+struct SpringTrial {
+	Vector<V> before, trial;
+	V square, limit;
+	Mask<V> open, gone, cut;
+
+	HEXMEMBRANE_INLINE SpringTrial(const Vector<V>& load, const Vector<V>& displacement, V stiffness, V most, Mask<V> opened)
+	    : before(load), trial(load - stiffness * displacement), square(dot(trial, trial)), limit(most), open(opened), gone(opened),
+	      cut(square > most * most)
+	{
+		if constexpr (std::is_same<V, double>::value) gone = opened || !(stiffness > 0);
+	}
+	/// The second half. A contact that opens, and a spring without stiffness, hold nothing (what is stored for lanes never has a load on such a spring, see
+	/// withoutLostSprings()). \param perSize 1/|trial| \param perStiffness 1/stiffness; of no consequence for a spring without load
+	/// \return work dissipated, (before + kept)/2 . (trial - kept)/stiffness: what is done on the spring by the trapezoidal rule less its gain in elastic
+	/// energy (PFC's definition); of one that opens, what it held.
+	HEXMEMBRANE_INLINE V keep(V perSize, V perStiffness, Vector<V>& load) const
+	{
+		const V nothing = constant<V>(0), share = gone ? nothing : (cut ? limit * perSize : constant<V>(1));
+		load = share * trial;
+		const Vector<V> sum = before + load, lost = trial - load;
+		return 0.5 * perStiffness * (open ? dot(before, before) : (cut ? dot(sum, lost) : nothing));
+	}
+	/// Of one contact: trial and limit are all there is to it.
+	bool elastic() const { return !cut && (!gone || square == 0); }
+};
+
+/// 1/a and 1/b by one quotient: it takes as long as ten products. Both are taken as 1e-100 at least.
+template <class V>
+HEXMEMBRANE_INLINE void invert(V& a, V& b)
+{
+	a = larger(a, constant<V>(1e-100));
+	b = larger(b, constant<V>(1e-100));
+	const V both = 1 / (a * b), ofA = both * b;
+	b = both * a;
+	a = ofA;
+}
+
+/// What a step of an unbonded contact brought.
+template <class V>
+struct UnbondedStep {
+	V normal; ///< N (N)
+	Mask<V> open;
+	V slip, roll; ///< as in ContactWorks (J)
+};
+
+/// One step of an unbonded contact. `shear` (N) and `moment` (N m) come already carried() into the present contact plane and go out advanced:
 ///   N = kn u, no tension: u < 0 opens the contact
 ///   shear  -> shear - ks slide,   cut to mu N
 ///   moment -> moment - kr bend,   cut to mu_r Rbar N
-/// `bend` is not looked at without rolling resistance, nor `slide` without shear stiffness.
+template <class V>
+HEXMEMBRANE_INLINE UnbondedStep<V> advanceUnbonded(const LinearLaw<V>& law, V overlap, const Vector<V>& slide, const Vector<V>& bend, Vector<V>& shear,
+                                                   Vector<V>& moment)
+{
+	const V nothing = constant<V>(0);
+	const Mask<V> open = overlap < 0;
+	UnbondedStep<V> step{open ? nothing : law.kn * overlap, open, nothing, nothing};
+	const SpringTrial<V> slip(shear, slide, law.ks, law.friction * step.normal, open);
+	const SpringTrial<V> roll(moment, bend, law.kr, law.rollingArm * step.normal, open);
+	if constexpr (std::is_same<V, double>::value) // roots and quotients are for the few that slide
+		if (slip.elastic() && roll.elastic()) {
+			shear = slip.trial;
+			moment = roll.trial;
+			return step;
+		}
+	V perShear = squareRoot(slip.square), perMoment = squareRoot(roll.square), perKs = law.ks, perKr = law.kr;
+	invert(perShear, perMoment);
+	invert(perKs, perKr);
+	if constexpr (std::is_same<V, double>::value) { // a script may take a spring away while it holds something
+		if (!(law.ks > 0)) perKs = 0;
+		if (!(law.kr > 0)) perKr = 0;
+	}
+	step.slip = slip.keep(perShear, perKs, shear);
+	step.roll = roll.keep(perMoment, perKr, moment);
+	return step;
+}
+
+/// One step of a contact, as advanceUnbonded(), or as advanceBond() when it is bonded; `bonded` is cleared when a bond breaks.
 inline ContactStep advanceContact(const ContactLaw& law, const ContactMotion& motion, Vec3& shear, Vec3& moment, bool& bonded)
 {
 	if (bonded) return advanceBond(law, motion, shear, moment, bonded);
-	ContactStep step{law.kn * motion.overlap, false, BondBreak::none, 0, 0, 0};
-	if (motion.overlap < 0) {
-		step.normal = 0;
-		step.open = true;
-		step.slipWork = springEnergy(shear.squaredNorm(), law.ks);
-		step.rollWork = springEnergy(moment.squaredNorm(), law.kr);
-		shear = moment = Vec3::Zero();
-		return step;
-	}
-	if (law.ks > 0) step.slipWork = loadAndCut(shear, motion.slide, law.ks, law.friction * step.normal);
-	if (law.kr > 0) step.rollWork = loadAndCut(moment, motion.bend, law.kr, law.rollingArm * step.normal);
-	return step;
+	const UnbondedStep<double> step = advanceUnbonded<double>(law, motion.overlap, motion.slide, motion.bend, shear, moment);
+	return {step.normal, step.open, BondBreak::none, {step.slip, step.roll, 0}};
+}
+
+/// What a contact remembers from step to step.
+template <class V>
+struct ContactMemory {
+	Vector<V> shear;  ///< shear force on body 2 (N)
+	Vector<V> moment; ///< bending moment on it (N m)
+	Vector<V> normal; ///< of the last step
+	/// Names of the vectors above, in their order: what a saved state is read by.
+	static constexpr const char* fields = "shear moment normal";
+};
+inline ContactMemory<double> noMemory() { return {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}; }
+
+/// What is left when springs were taken away: a spring without stiffness holds nothing.
+inline ContactMemory<double> withoutLostSprings(ContactMemory<double> memory, const LinearLaw<double>& law)
+{
+	if (!(law.ks > 0)) memory.shear = Vec3::Zero();
+	if (!(law.kr > 0)) memory.moment = Vec3::Zero();
+	return memory;
+}
+
+/// How the two bodies of a contact move.
+template <class V>
+struct PairMotion {
+	Vector<V> velocity;                ///< of body 2 against body 1 at the contact point (m/s)
+	Vector<V> spinSum, spinDifference; ///< of both spins, and of body 2 against body 1 (rad/s)
+};
+
+/// Carries what the contact remembers to its present normal.
+template <class V>
+HEXMEMBRANE_INLINE void carry(ContactMemory<V>& memory, const Vector<V>& normal, const Vector<V>& spinSum, V dt)
+{
+	const Vector<V> tilt = cross(memory.normal, normal), twist = (0.5 * dt * dot(memory.normal, spinSum)) * memory.normal;
+	memory.shear = carried(memory.shear, tilt, twist);
+	memory.moment = carried(memory.moment, tilt, twist);
+	memory.normal = normal;
 }
 
 } // namespace hexmembrane

@@ -28,25 +28,57 @@ struct ContactMaterial {
 	}
 };
 
-/// Law of a contact of the given shape and lever Rbar (m): springs in series, the smaller friction of both, kr = ks Rbar^2 where there is rolling friction.
-/// No bond.
-inline ContactLaw lawOfShape(const ContactMaterial& a, const ContactMaterial& b, double shape, double lever)
-{
-	const Springs springs = inSeries(a.springs(shape), b.springs(shape));
-	const double arm = std::min(a.rollingFriction, b.rollingFriction) * lever;
-	return {springs.kn, springs.ks, std::min(a.friction, b.friction), arm > 0 ? springs.ks * lever * lever : 0, arm, 0, 0};
-}
+/// Parameters of a pair of materials that do not depend on the bodies' sizes: they have few values in a scene.
+template <class V>
+struct PairKind {
+	V friction, rollingFriction; ///< coefficients mu and mu_r (-)
+};
 
-/// Of two spheres of radii r1 and r2 (m).
-inline ContactLaw sphereLaw(const ContactMaterial& a, const ContactMaterial& b, double r1, double r2)
+/// The smaller friction of both.
+inline PairKind<double> kindOf(const ContactMaterial& a, const ContactMaterial& b)
 {
-	return lawOfShape(a, b, contactShape(r1, r2), rollingRadius(r1, r2));
+	return {std::min(a.friction, b.friction), std::min(a.rollingFriction, b.rollingFriction)};
 }
-
-/// Of a sphere of radius r (m) on a boundary.
-inline ContactLaw boundaryLaw(const ContactMaterial& a, const ContactMaterial& b, double r) { return lawOfShape(a, b, contactShape(r), r); }
 
 /// Nothing but a normal force: no friction and no rolling resistance.
-inline bool normalOnly(const ContactLaw& law) { return !(law.friction > 0) && !(law.rollingArm > 0); }
+inline bool normalOnly(const PairKind<double>& kind) { return !(kind.friction > 0) && !(kind.rollingFriction > 0); }
+
+/// Parameters of a pair of bodies that depend on their sizes.
+template <class V>
+struct PairSprings {
+	V kn, ks;        ///< stiffnesses (N/m)
+	V rollingRadius; ///< Rbar (m)
+};
+
+/// Springs in series of a contact of the given shape, see contactShape(), and rolling radius (m).
+inline PairSprings<double> springsOfShape(const ContactMaterial& a, const ContactMaterial& b, double shape, double rollingRadius)
+{
+	const Springs springs = inSeries(a.springs(shape), b.springs(shape));
+	return {springs.kn, springs.ks, rollingRadius};
+}
+/// Of two spheres of radii r1 and r2 (m).
+inline PairSprings<double> sphereSprings(const ContactMaterial& a, const ContactMaterial& b, double r1, double r2)
+{
+	return springsOfShape(a, b, contactShape(r1, r2), rollingRadius(r1, r2));
+}
+/// Of a sphere of radius r (m) on a boundary.
+inline PairSprings<double> boundarySprings(const ContactMaterial& a, const ContactMaterial& b, double r) { return springsOfShape(a, b, contactShape(r), r); }
+
+/// The law of an unbonded contact: kr = ks Rbar^2, moment at most mu_r Rbar N.
+template <class V>
+HEXMEMBRANE_INLINE LinearLaw<V> lawOf(const PairSprings<V>& springs, const PairKind<V>& kind)
+{
+	return {springs.kn, springs.ks, kind.friction, springs.ks * springs.rollingRadius * springs.rollingRadius,
+	        kind.rollingFriction * springs.rollingRadius};
+}
+
+/// Law of two spheres of radii r1 and r2 (m), without a bond.
+inline ContactLaw sphereLaw(const ContactMaterial& a, const ContactMaterial& b, double r1, double r2)
+{
+	return {lawOf(sphereSprings(a, b, r1, r2), kindOf(a, b)), 0, 0};
+}
+
+/// Law of a sphere of radius r (m) on a boundary, without a bond.
+inline ContactLaw boundaryLaw(const ContactMaterial& a, const ContactMaterial& b, double r) { return {lawOf(boundarySprings(a, b, r), kindOf(a, b)), 0, 0}; }
 
 } // namespace hexmembrane

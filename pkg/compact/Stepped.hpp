@@ -1,0 +1,105 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "WorkMeter.hpp"
+
+#include "kernels/membrane/PaddedRings.hpp"
+
+#include <core/Body.hpp>
+#include <core/GlobalEngine.hpp>
+
+#include <functional>
+
+/* What an engine implements to be stepped in either tier. CompactLoop knows its engines by this interface alone; in the reference tier their action() makes the same
+ * calls over YADE's bodies (BodyView). How to write one: CONTRIBUTING.md, "An engine". */
+namespace yade {
+
+class HexMembrane;
+
+/*! Particles in rings that the compact tier moves in rows. An engine that holds them together owns the rows and offers them. */
+struct Sheet {
+	const HexMembrane* membrane = nullptr; //!< none: the engine owns no particles
+	const vector<Body::id_t>* ids = nullptr;
+	hexmembrane::HexStencil stencil;
+	hexmembrane::PaddedRings* position = nullptr;
+	hexmembrane::PaddedRings* velocity = nullptr;
+	hexmembrane::PaddedRings* spin = nullptr; //!< none: the particles do not turn
+};
+
+//! Rings first .. last of a membrane.
+struct RingRange {
+	int first, last;
+};
+
+/*! What a boundary's contacts do to it in this instant. */
+struct ContactSums {
+	Vector3r force = Vector3r::Zero(); //!< on the boundary (N)
+	Real normalForce = 0;              //!< sum of the sizes of the normal forces (N)
+	Real normalStiffness = 0;          //!< sum of the normal stiffnesses (N/m)
+	int count = 0;                     //!< of contacts
+	string silent;                     //!< class of a contact that does not tell its normal force and stiffness, empty: none
+};
+
+/*! An instant of a run as engines see it: positions and contact forces belong together, velocities are those of half a step before. */
+class StepView {
+public:
+	virtual ~StepView() = default;
+	//! Present centres of a membrane's particles, as wrapped rows.
+	virtual const hexmembrane::PaddedRings& positions(const HexMembrane& membrane) = 0;
+	//! Brings the rows of a sheet up to the present positions, velocities and spins.
+	virtual void refresh(const Sheet& sheet) = 0;
+	//! Adds forces to rings, and torques where given; they stay where they are until the step ends. `meter`: books their work; none: nobody wants it.
+	virtual void addForces(const HexMembrane& membrane, const vector<RingRange>& rings, const hexmembrane::PaddedRings& force,
+	                       const hexmembrane::PaddedRings* torque, WorkMeter* meter) = 0;
+	//! Gives rings a velocity, whatever acts on them, and books the work of what holds them. After all forces.
+	virtual void grip(const HexMembrane& membrane, const vector<std::pair<int, Vector3r>>& rings, WorkMeter& meter) = 0;
+	//! Normal forces of the contacts of each particle with all that is not membrane (N), on the particle.
+	virtual vector<Vector3r> contactForces(const HexMembrane& membrane) = 0;
+	//! Sums over the contacts of a boundary.
+	virtual ContactSums contacts(Body::id_t boundary) = 0;
+	//! Stiffness of a boundary's contacts along a unit vector: sum of kn c^2 + ks (1 - c^2), c the cosine between normal and vector (N/m).
+	virtual Real stiffness(Body::id_t boundary, const Vector3r& along) = 0;
+};
+
+class Stepped {
+public:
+	virtual ~Stepped() = default;
+	//! Once before steps are taken, with the engine's `scene` set. \throws std::invalid_argument, std::runtime_error for what is set wrong
+	virtual void prepare() = 0;
+	//! Adds forces, or says how something moves until the next instant.
+	virtual void step(StepView& view) = 0;
+	//! Enters stored energies of this instant into the scene's, before anything moves.
+	virtual void bookStored() {}
+	//! Enters works into the scene's energies.
+	virtual void bookWorks() {}
+	//! The particles that this engine holds together, after prepare().
+	virtual Sheet sheet() { return {}; }
+	//! Calls visit(first, second, branch, kn, ks) for each bond between particles of its sheet, by their indices there: for the critical time step.
+	using VisitBond = std::function<void(int, int, const Vector3r&, Real, Real)>;
+	virtual void forEachBond(const VisitBond&) const {}
+	//! The membrane that it acts on, none: no membrane.
+	virtual const HexMembrane* actsOn() const { return nullptr; }
+	//! Whether there may be several engines of this class in a list.
+	virtual bool mayBeSeveral() const { return false; }
+	//! In the compact tier: what it cannot do there. \throws std::runtime_error
+	virtual void requireCompactScene() const {}
+	//! In the reference tier: what in the scene would make it act wrongly. \throws std::runtime_error
+	virtual void requireReferenceScene() const {}
+
+protected:
+	//! A step of `self` over YADE's bodies: its action() in the reference tier.
+	void stepOverBodies(GlobalEngine& self);
+};
+
+/*! An engine that keeps the scene's contacts itself, so that O.interactions does not have them. */
+class ContactKeeper {
+public:
+	virtual ~ContactKeeper() = default;
+	//! The one of the scene that holds contacts now; none: they are in O.interactions.
+	static const ContactKeeper* in(const Scene& scene);
+	virtual bool keepsContacts() const = 0;
+	//! As StepView::contactForces(), of the last step.
+	virtual vector<Vector3r> contactForces(const HexMembrane& membrane) const = 0;
+};
+
+} // namespace yade

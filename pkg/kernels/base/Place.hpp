@@ -1,0 +1,14 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "kernels/base/Vec3.hpp"
+
+namespace hexmembrane {
+
+/// Where a sphere is (m): half a cache line, read as four numbers at once.
+struct alignas(32) Place {
+	Vec3 centre;
+	double radius;
+};
+
+} // namespace hexmembrane

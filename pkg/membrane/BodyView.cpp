@@ -1,0 +1,151 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "BodyView.hpp"
+
+#include "HexMembrane.hpp"
+
+#include "base/GatherBodies.hpp"
+
+#include <core/Interaction.hpp>
+#include <pkg/common/NormShearPhys.hpp>
+#include <pkg/dem/NewtonIntegrator.hpp>
+
+namespace yade {
+
+void Stepped::stepOverBodies(GlobalEngine& self)
+{
+	Scene& scene = *self.scene;
+	const string who = self.getClassName();
+	bool integrated = false;
+	for (const auto& engine : scene.engines) {
+		if (dynamic_cast<const NewtonIntegrator*>(engine.get())) integrated = true;
+		if (engine.get() == &self && integrated)
+			throw std::runtime_error(who + ": it comes after NewtonIntegrator in O.engines; fix: put it before, after the engines that add forces");
+	}
+	prepare();
+	constexpr long lookEvery = 1000; // engines are rarely changed while a test runs
+	if (scene.iter % lookEvery == 0) requireReferenceScene();
+	BodyView view(scene, who);
+	step(view);
+	bookStored();
+	bookWorks();
+}
+
+const ContactKeeper* ContactKeeper::in(const Scene& scene)
+{
+	for (const auto& engine : scene.engines) {
+		const auto* keeper = dynamic_cast<const ContactKeeper*>(engine.get());
+		if (keeper && !engine->dead && keeper->keepsContacts()) return keeper;
+	}
+	return nullptr;
+}
+
+const hexmembrane::PaddedRings& BodyView::positions(const HexMembrane& membrane)
+{
+	if (rowsOf != &membrane) membrane.gather(scene, who, rows);
+	rowsOf = &membrane;
+	return rows;
+}
+
+void BodyView::refresh(const Sheet& sheet)
+{
+	sheet.membrane->gather(scene, who, *sheet.position);
+	if (!sheet.spin) return;
+	const int n = sheet.stencil.perRing;
+#pragma omp parallel for schedule(static)
+	for (int k = 0; k < sheet.stencil.rings; ++k) {
+		for (int i = 0; i < n; ++i) {
+			const State& state = *(*scene.bodies)[(*sheet.ids)[k * n + i]]->state;
+			sheet.velocity->set(k, i, state.vel);
+			sheet.spin->set(k, i, state.angVel);
+		}
+		sheet.velocity->wrap(k);
+		sheet.spin->wrap(k);
+	}
+}
+
+void BodyView::addForces(const HexMembrane& membrane, const vector<RingRange>& rings, const hexmembrane::PaddedRings& force,
+                         const hexmembrane::PaddedRings* torque, WorkMeter* meter)
+{
+	vector<int> list;
+	for (const RingRange& range : rings)
+		for (int k = range.first; k <= range.last; ++k) list.push_back(k);
+	const int n = membrane.perRing, count = static_cast<int>(list.size()) * n;
+	vector<Vector3r> forces(meter ? count : 0), at(meter ? count : 0);
+	const hexmembrane::PaddedRings* x = meter ? &positions(membrane) : nullptr;
+	int bad = -1;
+#pragma omp parallel for schedule(static) reduction(max : bad)
+	for (int p = 0; p < count; ++p) {
+		const int k = list[p / n], i = p % n;
+		const Body::id_t id = membrane.ids[k * n + i];
+		const Vector3r f = force.get(k, i);
+		if (!isFinite(f)) bad = std::max(bad, k * n + i);
+		scene.forces.addForce(id, f);
+		if (torque) scene.forces.addTorque(id, torque->get(k, i));
+		if (!meter) continue;
+		forces[p] = f;
+		at[p] = x->get(k, i);
+	}
+	if (bad >= 0) throwNotFinite(who + ": force", membrane.ids[bad], scene);
+	if (meter) meter->add(scene.iter, forces, at);
+}
+
+void BodyView::grip(const HexMembrane& membrane, const vector<std::pair<int, Vector3r>>& rings, WorkMeter& meter)
+{
+	scene.forces.sync();
+	vector<Vector3r> held, at;
+	Real speeding = 0;
+	for (const auto& [ring, velocity] : rings)
+		for (int i = ring * membrane.perRing; i < (ring + 1) * membrane.perRing; ++i) {
+			State& state = *membrane.body(scene, i, who)->state;
+			speeding += 0.5 * state.mass * (velocity.squaredNorm() - state.vel.squaredNorm());
+			state.vel = velocity;
+			state.isDamped = false; // else NewtonIntegrator books a dissipation that does not take place
+			held.push_back(-scene.forces.getForce(membrane.ids[i]));
+			at.push_back(state.pos);
+		}
+	meter.add(scene.iter, held, at, speeding);
+}
+
+vector<Vector3r> BodyView::contactForces(const HexMembrane& membrane) { return membrane.contactForces(scene, who); }
+
+ContactSums BodyView::contacts(Body::id_t boundary)
+{
+	scene.forces.sync();
+	ContactSums sums;
+	sums.force = scene.forces.getForce(boundary);
+	for (const auto& entry : (*scene.bodies)[boundary]->intrs) {
+		const Interaction& contact = *entry.second;
+		if (!contact.isReal()) continue;
+		++sums.count;
+		const auto* geom = dynamic_cast<const GenericSpheresContact*>(contact.geom.get());
+		const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
+		if (!geom || !phys) {
+			sums.silent = contact.phys->getClassName();
+			continue;
+		}
+		sums.normalForce += phys->normalForce.dot(geom->normal);
+		sums.normalStiffness += phys->kn;
+	}
+	return sums;
+}
+
+Real BodyView::stiffness(Body::id_t boundary, const Vector3r& along)
+{
+	Real sum = 0;
+	for (const auto& entry : (*scene.bodies)[boundary]->intrs) {
+		const Interaction& contact = *entry.second;
+		if (!contact.isReal()) continue;
+		const auto* geom = dynamic_cast<const GenericSpheresContact*>(contact.geom.get());
+		const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
+		if (!geom || !phys)
+			throw std::runtime_error(
+			        who + ": contacts of " + contact.phys->getClassName() +
+			        " do not tell their stiffness; fix: a contact law whose IPhys derives from NormPhys, or give contactStiffness in N/m");
+		const auto* shear = dynamic_cast<const NormShearPhys*>(phys);
+		const Real cosine = geom->normal.dot(along), squared = cosine * cosine;
+		sum += phys->kn * squared + (shear ? shear->ks * (1 - squared) : 0);
+	}
+	return sum;
+}
+
+} // namespace yade

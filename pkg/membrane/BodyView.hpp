@@ -1,0 +1,29 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "compact/Stepped.hpp"
+
+namespace yade {
+
+/*! The reference tier's StepView: YADE's bodies, forces and interactions. */
+class BodyView : public StepView {
+public:
+	BodyView(Scene& s, const string& engine) : scene(s), who(engine) {}
+
+	const hexmembrane::PaddedRings& positions(const HexMembrane& membrane) override;
+	void refresh(const Sheet& sheet) override;
+	void addForces(const HexMembrane& membrane, const vector<RingRange>& rings, const hexmembrane::PaddedRings& force,
+	               const hexmembrane::PaddedRings* torque, WorkMeter* meter) override;
+	void grip(const HexMembrane& membrane, const vector<std::pair<int, Vector3r>>& rings, WorkMeter& meter) override;
+	vector<Vector3r> contactForces(const HexMembrane& membrane) override;
+	ContactSums contacts(Body::id_t boundary) override;
+	Real stiffness(Body::id_t boundary, const Vector3r& along) override;
+
+private:
+	Scene& scene;
+	const string who;
+	hexmembrane::PaddedRings rows;
+	const HexMembrane* rowsOf = nullptr;
+};
+
+} // namespace yade
