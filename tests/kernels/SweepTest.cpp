@@ -170,8 +170,10 @@ TEST(ContactStore, givesBackWhatItGot)
 	for (int c = 0; c < int(all.size()); ++c) {
 		const Contact got = store.get(c);
 		const ContactLaw& law = all[c].contact.law;
-		EXPECT_EQ(got.memory.shear, all[c].contact.memory.shear);
-		EXPECT_EQ(got.memory.moment, all[c].contact.memory.moment);
+		// what there is no spring for is not kept
+		const bool springs = all[c].springs.ks > 0;
+		EXPECT_EQ(got.memory.shear, springs ? all[c].contact.memory.shear : Vec3::Zero());
+		EXPECT_EQ(got.memory.moment, springs ? all[c].contact.memory.moment : Vec3::Zero());
 		EXPECT_EQ(got.memory.normal, all[c].contact.memory.normal);
 		EXPECT_EQ(got.law.kn, law.kn);
 		EXPECT_EQ(got.law.ks, law.ks);
