@@ -189,7 +189,7 @@ def test_labelsOfEngines(O, tier, tmp_path, request):
 @pytest.mark.parametrize(
 	"options",
 	[
-		pytest.param(dict(gain=0.05, pressureGain=0.05), marks=pytest.mark.xfail(strict=False, reason="lead: a row of records reads O.interactions")),
+		pytest.param(dict(servoTime=4e-4, pressureTime=4e-4), marks=pytest.mark.xfail(strict=False, reason="lead: a row of records reads O.interactions")),
 		pytest.param(dict(lateral="wall"), marks=pytest.mark.xfail(strict=False, reason="lead: a row of records reads O.interactions")),
 	],
 	ids=["membrane", "wall"],
@@ -277,7 +277,7 @@ HARD = {
 	"smooth grains, damped": dict(friction=0.0, rollingFriction=0.0, damping=0.2),
 	"rolling resistance beyond sliding": dict(friction=0.2, rollingFriction=2.0),
 	"deep overlaps": dict(swell=1.03),
-	"closed loop, shearing": dict(gain=0.2, velocity=0.02),
+	"closed loop, shearing": dict(servoTime=1e-4, velocity=0.02),
 }
 
 
