@@ -15,7 +15,7 @@ import yade
 from scipy.spatial import cKDTree
 
 import hexmembrane
-from hexmembrane.gradation import Gradation
+from hexmembrane.scene.gradation import Gradation
 
 RADIUS, HEIGHT, GRAINS, POROSITY = 0.02, 0.08, 7045, 0.389
 STRESSED = {"stress": 1e4, "young": 6e7, "friction": 0.4}

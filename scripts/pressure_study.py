@@ -13,7 +13,10 @@ import sys
 
 import hexmembrane  # noqa: F401
 import numpy
-from hexmembrane import config as configuration, records, scene, stages
+from hexmembrane import configuration
+from hexmembrane.output import records
+from hexmembrane.run import stages
+from hexmembrane.scene import SCENE
 from hexmembrane.run import run
 from yade import O
 

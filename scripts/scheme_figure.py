@@ -17,7 +17,10 @@ import numpy
 from yade import O
 
 import hexmembrane
-from hexmembrane import config, profile, scene, specimen, stages
+from hexmembrane import configuration
+from hexmembrane.measure import profile
+from hexmembrane.run import stages
+from hexmembrane.scene import SCENE, specimen
 
 ROOT = pathlib.Path(hexmembrane.__file__).resolve().parents[2]
 SCHEMES = {"three-stage": "three-stage", "main": "pressure on the main body only", "held": "ends held"}

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from hexmembrane.platens import platen
+from hexmembrane.scene.platens import platen
 
 RADIUS, HEIGHT = 0.02, 0.04
 

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 import hexmembrane  # noqa: F401
-from hexmembrane.platens import platen
+from hexmembrane.scene.platens import platen
 from yade import (
 	Bo1_Platen_Aabb,
 	Bo1_Sphere_Aabb,

@@ -3,7 +3,7 @@
 
 import math
 
-from hexmembrane.platens import platen
+from hexmembrane.scene.platens import platen
 from yade import (
 	Bo1_Platen_Aabb,
 	Bo1_Sphere_Aabb,

@@ -5,7 +5,7 @@ import math
 
 import pytest
 import yade
-from hexmembrane.platens import platen
+from hexmembrane.scene.platens import platen
 from platenScene import engines, floor, material, sphere
 from yade import Bo1_Platen_Aabb, Ig2_Platen_Sphere_ScGeom6D, Platen, Quaternion, Vector3, utils
 

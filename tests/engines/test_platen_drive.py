@@ -5,7 +5,7 @@ import math
 
 import pytest
 import yade
-from hexmembrane.platens import platen
+from hexmembrane.scene.platens import platen
 from platenScene import DENSITY, engines, floor, material, sphere
 from yade import PlatenDrive, Quaternion, Vector3
 

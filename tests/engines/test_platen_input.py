@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from hexmembrane.platens import platen
+from hexmembrane.scene.platens import platen
 from platenScene import material
 from yade import Platen, Vector3
 

@@ -7,7 +7,7 @@ import os
 import numpy
 import pytest
 
-from hexmembrane.gradation import Gradation, passingOf
+from hexmembrane.scene.gradation import Gradation, passingOf
 
 EXAMPLE = os.path.join(os.path.dirname(__file__), "..", "..", "examples", "data", "toyoura.csv")
 VOLUME = math.pi * 0.02**2 * 0.08

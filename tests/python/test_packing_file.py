@@ -9,8 +9,8 @@ import random
 import numpy
 import pytest
 
-from hexmembrane import packing_file
-from hexmembrane.packing_file import Packing
+from hexmembrane.scene import packing_file
+from hexmembrane.scene.packing_file import Packing
 
 
 def column(count=5, radius=0.3, **more):

@@ -5,7 +5,8 @@ import pathlib
 
 import numpy
 import pytest
-from hexmembrane import config as configuration, records
+from hexmembrane import configuration
+from hexmembrane.output import records
 from hexmembrane.run import run
 
 PAPER = pathlib.Path(__file__).parents[2] / "examples" / "paper"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Loading platens as bodies.
+"""End platens as bodies.
 
 A platen is one body with the shape :yref:`Platen`, a solid cylinder. This module places it by the face that touches the specimen,
 which is what one knows, and not by its centre. Motion is given by the engine :yref:`PlatenDrive`; contacts need
@@ -26,12 +26,12 @@ def platen(faceCentre, radius, height, facing, material=None, color=(0.55, 0.57,
 	"""
 	centre = [float(coordinate) for coordinate in faceCentre]
 	if len(centre) != 3 or not all(map(math.isfinite, centre)):
-		raise ValueError("platen.faceCentre = %r: must be three finite coordinates; fix: give (x, y, z) in m" % (faceCentre,))
+		raise ValueError(f"platen.faceCentre = {faceCentre!r}: must be three finite coordinates; fix: give (x, y, z) in m")
 	for name, value in (("radius", radius), ("height", height)):
 		if not (math.isfinite(value) and value > 0):
-			raise ValueError("platen.%s = %r: must be positive and finite; fix: give a number > 0 in m" % (name, value))
+			raise ValueError(f"platen.{name} = {value!r}: must be positive and finite; fix: give a number > 0 in m")
 	if facing not in (1, -1):
-		raise ValueError("platen.facing = %r: unknown; fix: give +1 (face looks up) or -1 (face looks down)" % (facing,))
+		raise ValueError(f"platen.facing = {facing!r}: unknown; fix: give +1 (face looks up) or -1 (face looks down)")
 
 	body = yade.Body()
 	body.shape = yade.Platen(radius=radius, height=height, color=color)
@@ -47,10 +47,10 @@ def _material(wanted):
 	if isinstance(wanted, yade.Material):
 		return wanted
 	if len(materials) == 0:
-		raise ValueError("platen.material = %r: O.materials is empty; fix: append a material first, or give one" % (wanted,))
+		raise ValueError(f"platen.material = {wanted!r}: O.materials is empty; fix: append a material first, or give one")
 	if wanted is None:
 		return materials[len(materials) - 1]
 	try:
 		return materials[wanted]
 	except (IndexError, KeyError, RuntimeError, ValueError) as error:
-		raise ValueError("platen.material = %r: %s; fix: give a Material, its label or its index" % (wanted, error)) from error
+		raise ValueError(f"platen.material = {wanted!r}: {error}; fix: give a Material, its label or its index") from error

@@ -37,8 +37,13 @@ _ROUNDING = 1e-9
 class Packing:
 	"""Spheres in a cylinder with axis +z.
 
-	:param centres: m, N x 3. :param radii: m, N. :param radius, height: of the cylinder, m. :param origin: centre of its bottom face, m.
-	:param seed: of the random numbers that made it, or None. :param gradation: where the sizes come from, a text, or None.
+	:param centres: m, N x 3.
+	:param radii: m, N.
+	:param radius: of the cylinder, m.
+	:param height: of the cylinder, m.
+	:param origin: centre of its bottom face, m.
+	:param seed: of the random numbers that made it, or None.
+	:param gradation: where the sizes come from, a text, or None.
 	:param extra: further facts to keep with it, a dict that JSON can hold.
 	:param maxOverlap: largest overlap allowed (of two spheres or with the wall, over the mean radius); more is an error.
 	:raises ValueError: naming entry, value and what to do.
@@ -80,18 +85,18 @@ class Packing:
 			array.flags.writeable = False
 
 	@classmethod
-	def of(cls, made, gradation=None, extra=None):
+	def of(cls, generator, gradation=None, extra=None):
 		"""From a generated ``CylinderPacking``."""
 		return cls(
-			[tuple(c) for c in made.centres],
-			made.sizes,
-			made.radius,
-			made.height,
-			tuple(made.origin),
-			made.seed,
+			[tuple(c) for c in generator.centres],
+			generator.sizes,
+			generator.radius,
+			generator.height,
+			tuple(generator.origin),
+			generator.seed,
 			gradation,
 			extra,
-			made.maxOverlap + _ROUNDING,
+			generator.maxOverlap + _ROUNDING,
 		)
 
 	@property

@@ -14,7 +14,7 @@ has; but the rows beside the platens take horizontal forces only, and it is ther
 radius: in a consolidated specimen of 1,000 grains (examples/paper/schemes.md) sigma3 (Am - Ae) is -14.7 N, P -1.4 N, of F = 125 N.
 With P the balance closes to 0.02 N of 120 N against the contacts that cross the plane, in three such states at rest; in shear inertia
 is left, up to 2 %. N counts a contact of membrane and grain across the plane whole; a mean stress of the soil alone
-(:mod:`hexmembrane.profile`) counts it to the contact point and lies 3 % lower for R/r = 0.8.
+(:mod:`hexmembrane.measure.profile`) counts it to the contact point and lies 3 % lower for R/r = 0.8.
 
 F is what the soil presses on the platen: the O-rings are held on their own, so that a pull that runs unchanged from one O-ring to the
 other (T_mid = T_end) is not in F and takes nothing off. A laboratory's load cell has the O-rings' pull in it and would show F - T_end;
@@ -34,48 +34,26 @@ membrane still pulls. Its share in the pressure, sigma3_membrane, is +3.2 kPa. T
 A rigid wall has no membrane: the terms are zero and q_corrected is q; friction on the wall is not corrected.
 """
 
-import numpy
-
-#: Values of the columns where there is no membrane.
-NONE = {"pressure_axial": 0.0, "membrane_axial_mid": 0.0, "membrane_axial_end": 0.0, "sigma3_membrane": 0.0}
+from hexmembrane.scene.membrane_loads import MembraneLoads
 
 
-def endHeights(membrane):
-	"""Heights [m] of the planes midway between the innermost O-ring row and the row inside it, at the lower and the upper end."""
-	rows = numpy.array(membrane.positions)[:, 2].reshape(membrane.rings, membrane.perRing).mean(axis=1)
-	k = membrane.oRingRows
-	return 0.5 * float(rows[k - 1] + rows[k]), 0.5 * float(rows[-k] + rows[-k - 1])
-
-
-def axialPush(z, force, middle):
-	"""P [N]: axial parts of applied forces towards mid-height, mean of both halves.
-
-	:param z: heights of the loaded points [m]. :param force: axial parts of the forces on them [N]. :param middle: mid-height [m].
-	"""
-	return 0.5 * float(force[z < middle].sum() - force[z >= middle].sum())
-
-
-def terms(membrane, bonds, pressing, bottom, top):
-	"""P, the membrane's axial tension [N] at mid-height and at the O-rings, and its share [Pa] of the pressure on the soil, as a dict of columns.
-
-	:param membrane: a HexMembrane with O-ring rows. :param bonds: its MembraneBonds, a step run. :param pressing: its MembranePressure.
-	:param bottom: height of the bottom platen's face [m]. :param top: of the top platen's [m].
-	"""
-	middle = 0.5 * (bottom + top)
-	applied = numpy.array([force[2] for force in pressing.forces()])
+def columns(loads: MembraneLoads):
+	"""The loads as columns of the records."""
 	return {
-		"pressure_axial": axialPush(numpy.array(membrane.positions)[:, 2], applied, middle),
-		"membrane_axial_mid": bonds.axialTension(middle),
-		"membrane_axial_end": sum(bonds.axialTension(z) for z in endHeights(membrane)) / 2,
-		"sigma3_membrane": bonds.radialShare(3),
+		"pressure_axial": loads.axialPush,
+		"membrane_axial_mid": loads.axialPullMiddle,
+		"membrane_axial_end": loads.axialPullEnd,
+		"sigma3_membrane": loads.radialPressure,
 	}
 
 
-def corrected(force, pressure, area, found):
+def correctedStress(force, pressure, area, loads: MembraneLoads):
 	"""q_corrected [Pa].
 
-	:param force: F, mean of the platens' forces [N]. :param pressure: sigma3 applied [Pa]. :param area: Am [m2].
-	:param found: the columns of :func:`terms`, or NONE.
+	:param force: F, mean of the platens' forces [N].
+	:param pressure: sigma3 applied [Pa].
+	:param area: Am [m2].
+	:param loads: what the membrane carries; all 0 without one.
 	"""
-	inSoil = force + found["pressure_axial"] + found["membrane_axial_mid"] - found["membrane_axial_end"]
-	return inSoil / area - (pressure + found["sigma3_membrane"])
+	soil = force + loads.axialPush + loads.axialPullMiddle - loads.axialPullEnd
+	return soil / area - (pressure + loads.radialPressure)

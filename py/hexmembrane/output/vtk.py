@@ -40,8 +40,10 @@ def _attach(data, arrays, count, where):
 def write(path, points, triangles=None, pointData=None, cellData=None):
 	"""Write points (N, 3), as vertices or with ``triangles`` (M, 3) as a surface, by temporary name and rename.
 
-	:param pointData: name -> array of N values or N rows. :param cellData: the same per cell.
-	:raises ValueError: an array has the wrong length. :raises OSError: the file cannot be written.
+	:param pointData: name -> array of N values or N rows.
+	:param cellData: the same per cell.
+	:raises ValueError: an array has the wrong length.
+	:raises OSError: the file cannot be written.
 	"""
 	path = pathlib.Path(path)
 	points = numpy.ascontiguousarray(points, dtype=float).reshape(-1, 3)
@@ -80,8 +82,8 @@ def read(path):
 	surface = data.GetNumberOfPolys() > 0
 	cells = vtk_to_numpy((data.GetPolys() if surface else data.GetVerts()).GetConnectivityArray())
 
-	def arrays(found):
-		return {found.GetArrayName(k): vtk_to_numpy(found.GetArray(k)) for k in range(found.GetNumberOfArrays())}
+	def arrays(group):
+		return {group.GetArrayName(k): vtk_to_numpy(group.GetArray(k)) for k in range(group.GetNumberOfArrays())}
 
 	points = vtk_to_numpy(data.GetPoints().GetData())
 	return points, cells.reshape(-1, 3 if surface else 1), arrays(data.GetPointData()), arrays(data.GetCellData())
@@ -99,21 +101,3 @@ def series(path, frames):
 		encoding="utf-8",
 	)
 	part.replace(path)
-
-
-def states(bodies):
-	"""Positions, velocities and displacements since the stage began, (N, 3) each, of bodies' states."""
-	bodies = list(bodies)
-	x = numpy.array([tuple(s.pos) for s in bodies])
-	return x, numpy.array([tuple(s.vel) for s in bodies]), x - numpy.array([tuple(s.refPos) for s in bodies])
-
-
-def normals(points, triangles):
-	"""Unit normals at the points of a triangulated surface, area-weighted; zero where a point has no triangle."""
-	a, b, c = (points[triangles[:, k]] for k in range(3))
-	cross = numpy.cross(b - a, c - a)
-	total = numpy.zeros_like(points)
-	for k in range(3):
-		numpy.add.at(total, triangles[:, k], cross)
-	length = numpy.linalg.norm(total, axis=1, keepdims=True)
-	return numpy.divide(total, length, out=numpy.zeros_like(total), where=length > 0)

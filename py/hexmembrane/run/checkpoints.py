@@ -45,12 +45,12 @@ def read(folder):
 
 def differences(old, new, path=""):
 	"""Key paths whose values differ between two nested dictionaries."""
-	found = []
+	paths = []
 	for name in sorted(set(old) | set(new)):
 		at = f"{path}.{name}" if path else name
 		a, b = old.get(name), new.get(name)
 		if isinstance(a, dict) and isinstance(b, dict):
-			found += differences(a, b, at)
+			paths += differences(a, b, at)
 		elif a != b:
-			found.append(at)
-	return found
+			paths.append(at)
+	return paths

@@ -10,23 +10,25 @@ from yade import O
 
 #: YADE's names of the work that comes in, with a minus sign there, as YADE has it with gravity.
 WORK = ("platenWork", "pressureWork", "radialServoWork", "oRingWork", "wallWork")
+#: YADE's names of what contacts dissipate: sliding and rolling.
+CONTACT_DISSIPATION = ("plastDissip", "rollDissip")
 
 
-def measured():
-	"""Energies [J]: stored elastic, membrane, kinetic; friction (sliding and rolling) and damping dissipated and work done on the specimen so far.
+def current():
+	"""Energies [J]: stored elastic, membrane and kinetic; dissipated by contacts and by damping, and work done on the specimen, so far.
 
 	Zeros before the first step that tracked them.
 	"""
-	found = dict(O.energy.items())
+	tracked = dict(O.energy.items())
 
 	def total(*names):
-		return sum(found.get(name, 0.0) for name in names)
+		return sum(tracked.get(name, 0.0) for name in names)
 
 	return {
 		"elastic": total("elastPotential"),
 		"membrane": total("elastMembrane"),
 		"kinetic": total("kinetic"),
-		"friction": total("plastDissip", "rollDissip"),
+		"friction": total(*CONTACT_DISSIPATION),
 		"damping": total("nonviscDamp"),
 		"work": -total(*WORK),
 	}

@@ -84,9 +84,11 @@ class Gradation:
 		(diameter, percent passing) for each sieve, from fine to coarse or from coarse to fine. Separated by commas, semicolons or tabs; with
 		the last two a decimal comma is understood. Empty lines and lines that begin with # are skipped.
 
-		:param cutBelow, cutAbove: m; grains finer or coarser than these are left out and the rest is taken as the whole. A curve that does
-			not come down to 0 or up to 100 percent needs the cut on that side: how fine the finest are is not in it.
-		:raises ValueError: naming file, line and what to do. :raises OSError: when the file cannot be read.
+		:param cutBelow: m; grains finer than this are left out and the rest is taken as the whole. A curve that does not come down to
+			0 percent needs it: how fine the finest are is not in it.
+		:param cutAbove: m; the same for coarser grains and a curve that does not come up to 100 percent.
+		:raises ValueError: naming file, line and what to do.
+		:raises OSError: when the file cannot be read.
 		"""
 		rows = _readRows(path)
 		if rows[0][0] > rows[-1][0]:
@@ -106,7 +108,8 @@ class Gradation:
 	def fromBins(cls, edges, massFractions):
 		"""From the mass in each bin of diameters.
 
-		:param edges: m, strictly ascending, one more than the bins. :param massFractions: of each bin, >= 0, in any unit: their sum is the whole.
+		:param edges: m, strictly ascending, one more than the bins.
+		:param massFractions: of each bin, >= 0, in any unit: their sum is the whole.
 		"""
 		edges, fractions = list(edges), [float(f) for f in massFractions]
 		if len(edges) != len(fractions) + 1:

@@ -11,9 +11,13 @@ import time
 
 from yade import O
 
-from hexmembrane import checkpoints, frames, measure, scene
-from hexmembrane.progress import Progress
-from hexmembrane.records import Records
+from hexmembrane.measure import rows
+from hexmembrane.output.frames import Frames
+from hexmembrane.output.records import Records
+from hexmembrane.run import checkpoints
+from hexmembrane.run.progress import Progress
+from hexmembrane.scene.builder import checkTimeStep
+from hexmembrane.scene.handles import Scene
 
 #: Parts that the pressure's smooth rise is divided into; each is 1 % of the time.
 RAMP_PARTS = 100
@@ -28,41 +32,46 @@ class StageError(RuntimeError):
 	"""A stage that cannot reach its target, or that YADE stopped; a checkpoint of the last sound state is in the folder."""
 
 
-class Test:
-	"""A test whose specimen and boundary are in ``O`` (see :func:`hexmembrane.scene.build`).
+class TriaxialTest:
+	"""A test whose specimen and lateral boundary are in ``O`` (see :func:`hexmembrane.scene.builder.build`).
 
-	:param config: checked configuration. :param out: existing folder for all files. :param quiet: print nothing.
+	Attributes: ``config``, ``out``, ``quiet`` (see below); ``scene`` and ``grains`` (handles), ``stage`` (name), ``rowCount`` (rows of the stage so
+	far), ``lastRow`` (a dict by column of the records), ``stageStart`` (step and time), ``reference`` (what strains count from), ``records``, ``frames``.
+
+	:param config: checked configuration.
+	:param out: existing folder for all files.
+	:param quiet: print nothing.
 	:param facts: a checkpoint's facts to go on from (its state loaded); None: begin.
 	"""
 
 	def __init__(self, config, out, quiet=False, facts=None):
 		self.config, self.out, self.quiet = config, pathlib.Path(out), quiet
-		self.scene = scene.Scene()
-		self.grains = measure.Grains.of(self.scene.grainIds())
+		self.scene = Scene()
+		self.grains = rows.Grains.of(self.scene.grainIds())
 		facts = facts or {}
 		self.stage = facts.get("stage", "generated")
-		self.rows = facts.get("rows", 0)
-		self.begun = facts.get("begun", {"step": O.iter, "time": O.time})
-		self.frames = frames.Frames(self.out, facts.get("frames", ()))
+		self.rowCount = facts.get("rows", 0)
+		self.stageStart = facts.get("begun", {"step": O.iter, "time": O.time})
+		self.frames = Frames(self.out, facts.get("frames", ()))
 		self.records = Records(self.out / "records.csv", facts.get("bytes"))
-		self.reference = measure.Reference(**facts["reference"]) if "reference" in facts else measure.Reference.of(self.scene)
-		self.last = facts.get("last")
-		self.spent = facts.get("elapsed", 0.0)
+		self.reference = rows.Reference(**facts["reference"]) if "reference" in facts else rows.Reference.of(self.scene)
+		self.lastRow = facts.get("last")
+		self._earlier = facts.get("elapsed", 0.0)
 		self._clock = time.monotonic()
 
 	# What both stages share
 
 	def elapsed(self):
 		"""Wall clock of the test so far [s]."""
-		return self.spent + time.monotonic() - self._clock
+		return self._earlier + time.monotonic() - self._clock
 
 	def _enter(self, stage):
 		"""Begin a stage: strains, displacements and energies count from here."""
 		if O.trackEnergy and not O.energy.items():
 			self.advance(1)  # energies are known after a step
-		self.stage, self.rows = stage, 0
-		self.begun = {"step": O.iter, "time": O.time}
-		self.reference = measure.Reference.of(self.scene)
+		self.stage, self.rowCount = stage, 0
+		self.stageStart = {"step": O.iter, "time": O.time}
+		self.reference = rows.Reference.of(self.scene)
 		for body in O.bodies:
 			body.state.refPos = body.state.pos
 			body.state.refOri = body.state.ori
@@ -85,44 +94,44 @@ class Test:
 
 	def row(self):
 		"""Measure, write and return a row of the records."""
-		self.scene.showContacts()
-		self.last = measure.row(self.scene, self.grains, self.reference, self.stage, self.elapsed())
-		lost = measure.escaped(self.scene, self.grains)
+		self.scene.exportContacts()
+		self.lastRow = rows.row(self.scene, self.grains, self.reference, self.stage, self.elapsed())
+		lost = rows.escaped(self.scene, self.grains)
 		if lost is not None:
 			raise StageError(
-				f"{self.stage}.step = {O.iter}: grain {lost} at {tuple(O.bodies[lost].state.pos)} has left the {self.scene.lateral.name}; "
+				f"{self.stage}.step = {O.iter}: grain {lost} at {tuple(O.bodies[lost].state.pos)} has left the {self.scene.lateralBoundary.name}; "
 				"fix: a smaller membrane.particleRadius, a smaller numerics.safety or a slower test"
 			)
-		self.records.append(self.last)
-		self.rows += 1
-		return self.last
+		self.records.append(self.lastRow)
+		self.rowCount += 1
+		return self.lastRow
 
 	def checkpoint(self, name=None):
 		"""Save the state (as ``name``.yade.gz, kept; else as this stage's last checkpoint) and go on from the saved state."""
 		old = checkpoints.read(self.out)["state"] if (self.out / "checkpoint.json").is_file() else None
-		state = f"{name or 'checkpoint-' + self.stage + '-' + str(self.rows)}.yade.gz"
+		state = f"{name or 'checkpoint-' + self.stage + '-' + str(self.rowCount)}.yade.gz"
 		part = self.out / ("part-" + state)
 		O.save(str(part), quiet=True)
 		part.replace(self.out / state)
 		facts = {
 			"stage": self.stage,
-			"rows": self.rows,
-			"begun": self.begun,
+			"rows": self.rowCount,
+			"begun": self.stageStart,
 			"bytes": self.records.position(),
-			"frames": self.frames.list,
+			"frames": self.frames.written,
 			"reference": vars(self.reference),
-			"last": self.last,
+			"last": self.lastRow,
 			"elapsed": round(self.elapsed(), 2),
 		}
 		checkpoints.write(self.out, state, facts)
 		if old and old != state and old.startswith("checkpoint-"):
 			(self.out / old).unlink(missing_ok=True)
 		load(self.out / state)
-		self.scene = scene.Scene()
+		self.scene = Scene()
 		self.scene.guard.checkpoint = str(self.out / state)
 
 	def _show(self, progress, done):
-		row = self.last
+		row = self.lastRow
 		progress.update(
 			done,
 			strain=f"{100 * row['axial_strain']:.2f} %",
@@ -142,39 +151,39 @@ class Test:
 		:raises StageError: not at rest after maxSteps, the state it reached is the checkpoint; or a servo did not reach its target within
 			timeLimit, the checkpoint is the last one before.
 		"""
-		given = self.config.consolidation
-		rampTime = given.rampTime or 30 * self._inertialTime()
+		keys = self.config.consolidation
+		rampTime = keys.rampTime or 30 * self._inertialTime()
 		with Progress("consolidation", self.quiet) as progress:
 			if self.stage == "generated":
 				self._beginConsolidation()
-			self.scene.setTimeLimit(given.timeLimit)
-			while not (self.rows and self._atRest(rampTime)):
-				steps = O.iter - self.begun["step"]
-				if steps >= given.maxSteps:
+			self.scene.setTimeLimit(keys.timeLimit)
+			while not (self.rowCount and self._atRest(rampTime)):
+				steps = O.iter - self.stageStart["step"]
+				if steps >= keys.maxSteps:
 					self.checkpoint()
 					raise StageError(self._restless(steps))
-				self._rampedChunk(rampTime, min(self.config.output.consolidationSteps, given.maxSteps - steps))
+				self._rampedChunk(rampTime, min(self.config.output.consolidationSteps, keys.maxSteps - steps))
 				self.row()
 				self._show(progress, self._consolidationDone(rampTime))
-				scene.checkTimeStep(self.config, self.scene, progress.say)
+				checkTimeStep(self.config, self.scene, progress.say)
 				self._maybeCheckpoint()
-			progress.update(1.0, porosity=f"{self.last['porosity']:.4f}", coordination=f"{self.last['coordination']:.2f}")
+			progress.update(1.0, porosity=f"{self.lastRow['porosity']:.4f}", coordination=f"{self.lastRow['coordination']:.2f}")
 			progress.say(
-				f"consolidated after {O.iter - self.begun['step']} steps: unbalanced {self.last['unbalanced']:.2e}, "
-				f"transmitted {1e-3 * self.last['sigma3_transmitted_group3']:.2f} kPa of {1e-3 * given.pressure:g} kPa"
+				f"consolidated after {O.iter - self.stageStart['step']} steps: unbalanced {self.lastRow['unbalanced']:.2e}, "
+				f"transmitted {1e-3 * self.lastRow['sigma3_transmitted_group3']:.2f} kPa of {1e-3 * keys.pressure:g} kPa"
 			)
 		self.beginShear()
 		self.checkpoint("consolidated")
 
 	def _beginConsolidation(self):
-		given = self.config.consolidation
+		keys = self.config.consolidation
 		self.stage = "consolidation"
-		self.scene.setPressure(_FIRST * given.pressure)
+		self.scene.setPressure(_FIRST * keys.pressure)
 		speed = QUASISTATIC / self._inertialTime()
-		self.scene.top.maxVelocity = speed * self.reference.height
-		self.scene.lateral.setMaxVelocity(self.config.wall.maxVelocity or speed * self.reference.radius)
-		if given.friction is not None:
-			self.scene.setFriction(given.friction)
+		self.scene.topDrive.maxVelocity = speed * self.reference.height
+		self.scene.lateralBoundary.setMaxVelocity(self.config.wall.maxVelocity or speed * self.reference.radius)
+		if keys.friction is not None:
+			self.scene.setFriction(keys.friction)
 		self._enter("consolidation")
 		self.checkpoint()
 
@@ -187,7 +196,7 @@ class Test:
 		target = self.config.consolidation.pressure
 		end = O.iter + steps
 		while O.iter < end:
-			share = min(1.0, (O.time - self.begun["time"]) / rampTime)
+			share = min(1.0, (O.time - self.stageStart["time"]) / rampTime)
 			self.scene.setPressure(target * max(_FIRST, (1 - math.cos(math.pi * share)) / 2))
 			part = end - O.iter
 			if share < 1:
@@ -198,36 +207,36 @@ class Test:
 		"""Relative distances of transmitted pressure and axial stress from the pressure."""
 		target = self.config.consolidation.pressure
 		return {
-			"transmitted pressure": abs(self.last["sigma3_transmitted_group3"] / target - 1),
-			"axial stress": abs(self.last["platen_force_top"] / (target * self.scene.endArea()) - 1),
+			"transmitted pressure": abs(self.lastRow["sigma3_transmitted_group3"] / target - 1),
+			"axial stress": abs(self.lastRow["platen_force_top"] / (target * self.scene.endArea()) - 1),
 		}
 
 	def _tolerance(self):
-		"""The configured one, or what the boundary can hold: without a closed loop the membrane's own tension is on the soil too."""
-		given = self.config.consolidation.tolerance
-		if given is not None:
-			return given
+		"""The configured one, or what the lateral boundary can hold: without a closed loop the membrane's own tension is on the soil too."""
+		tolerance = self.config.consolidation.tolerance
+		if tolerance is not None:
+			return tolerance
 		return 0.05 if self.config.boundary == "membrane" and self.config.membrane.pressureGain == 0 else 0.005
 
 	def _atRest(self, rampTime):
-		given = self.config.consolidation
-		ramped = O.time - self.begun["time"] >= rampTime and self.last["sigma3_target"] == given.pressure
-		return ramped and self.last["unbalanced"] < given.unbalanced and max(self._errors().values()) < self._tolerance()
+		keys = self.config.consolidation
+		ramped = O.time - self.stageStart["time"] >= rampTime and self.lastRow["sigma3_target"] == keys.pressure
+		return ramped and self.lastRow["unbalanced"] < keys.unbalanced and max(self._errors().values()) < self._tolerance()
 
 	def _consolidationDone(self, rampTime):
 		"""Share of the consolidation done: half for the ramp, half for the decades of unbalanced force."""
-		share = (O.time - self.begun["time"]) / rampTime
+		share = (O.time - self.stageStart["time"]) / rampTime
 		if share < 1:
 			return share / 2
-		decades = math.log10(max(self.last["unbalanced"], 1e-30) / self.config.consolidation.unbalanced)
+		decades = math.log10(max(self.lastRow["unbalanced"], 1e-30) / self.config.consolidation.unbalanced)
 		return min(0.99, 0.5 + 0.5 * (1 - min(1.0, max(0.0, decades / 3))))
 
 	def _restless(self, steps):
-		given = self.config.consolidation
+		keys = self.config.consolidation
 		errors = ", ".join(f"{name} off by {100 * error:.2g} %" for name, error in self._errors().items())
 		return (
-			f"consolidation.maxSteps = {given.maxSteps}: not at rest after {steps} steps (unbalanced {self.last['unbalanced']:.2e}, "
-			f"limit {given.unbalanced:g}; {errors}, tolerance {100 * self._tolerance():g} %); its state is the checkpoint in "
+			f"consolidation.maxSteps = {keys.maxSteps}: not at rest after {steps} steps (unbalanced {self.lastRow['unbalanced']:.2e}, "
+			f"limit {keys.unbalanced:g}; {errors}, tolerance {100 * self._tolerance():g} %); its state is the checkpoint in "
 			f"'{self.out}'; fix: allow more steps, a higher limit or tolerance, or more numerics.damping"
 		)
 
@@ -238,12 +247,12 @@ class Test:
 		self._enter("shear")
 		self.scene.setFriction(self.config.specimen.friction)
 		self.scene.setTimeLimit(None)
-		given = self.config.shear
-		share = {"top": (0.0, 1.0), "both": (0.5, 0.5)}[given.moving]
-		for drive, part in zip((self.scene.bottom, self.scene.top), share):
+		keys = self.config.shear
+		share = {"top": (0.0, 1.0), "both": (0.5, 0.5)}[keys.moving]
+		for drive, part in zip((self.scene.bottomDrive, self.scene.topDrive), share):
 			drive.mode = "velocity"
-			drive.velocity = part * given.velocity
-			drive.rampTime = 2 * given.rampStrain * self.reference.height / given.velocity
+			drive.velocity = part * keys.velocity
+			drive.rampTime = 2 * keys.rampStrain * self.reference.height / keys.velocity
 
 	def strain(self):
 		"""Axial strain since the stage began, compression positive."""
@@ -255,23 +264,23 @@ class Test:
 
 		:raises StageError: the platens do not move as asked.
 		"""
-		given = self.config.shear
+		keys = self.config.shear
 		total = self.config.output.records
 		with Progress("shear", self.quiet) as progress:
 			self._announceShear(progress)
-			if self.rows == 0:
+			if self.rowCount == 0:
 				self.advance(1)  # forces are not in a saved state, and a row needs them
 				self.row()
 				self._frame()
-			while self.rows <= total:
-				self._until(given.strain * self.rows / total)
+			while self.rowCount <= total:
+				self._until(keys.strain * self.rowCount / total)
 				self.row()
-				self._show(progress, (self.rows - 1) / total)
+				self._show(progress, (self.rowCount - 1) / total)
 				every = self.config.output.vtkEvery
-				if every and ((self.rows - 1) % every == 0 or self.rows > total):
+				if every and ((self.rowCount - 1) % every == 0 or self.rowCount > total):
 					self._frame()
 				if self._checkpointDue():
-					scene.checkTimeStep(self.config, self.scene, progress.say)
+					checkTimeStep(self.config, self.scene, progress.say)
 				self._maybeCheckpoint()
 			self._report(progress)
 		self.checkpoint("sheared")
@@ -289,15 +298,15 @@ class Test:
 		return math.ceil((self.config.shear.strain + self.config.shear.rampStrain) * self.reference.height / (self.config.shear.velocity * O.dt))
 
 	def _announceShear(self, progress):
-		given = self.config.shear
-		inertial = given.velocity / self.reference.height * self._inertialTime()
+		keys = self.config.shear
+		inertial = keys.velocity / self.reference.height * self._inertialTime()
 		progress.say(
-			f"shear at {given.velocity:g} m/s to {100 * given.strain:g} %: about {self._stepsOfShear()} steps, inertial number {inertial:.2e}"
+			f"shear at {keys.velocity:g} m/s to {100 * keys.strain:g} %: about {self._stepsOfShear()} steps, inertial number {inertial:.2e}"
 			+ ("" if inertial <= QUASISTATIC else f"; WARNING: above {QUASISTATIC:g} this is not quasi-static; fix: lower shear.velocity")
 		)
 
 	def _report(self, progress):
-		row = self.last
+		row = self.lastRow
 		progress.say(
 			f"sheared to {100 * row['axial_strain']:.2f} %: q {1e-3 * row['q']:.1f} kPa, volumetric strain "
 			f"{100 * row['volumetric_strain_radius']:.2f} % (Eq. 6) and {100 * row['volumetric_strain_volume']:.2f} % (volume), "
@@ -307,11 +316,11 @@ class Test:
 
 	def _frame(self):
 		if self.config.output.vtkEvery:
-			self.frames.write(self.scene, self.grains, self.reference)
+			self.frames.write(self.scene, self.grains, self.reference.radius)
 
 	def _checkpointDue(self):
 		every = self.config.output.checkpointEvery
-		return every > 0 and self.rows % every == 0
+		return every > 0 and self.rowCount % every == 0
 
 	def _maybeCheckpoint(self):
 		if self._checkpointDue():

@@ -1,26 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The configuration of a triaxial test: sections, keys, units, defaults and ranges. SI units everywhere.
 
-``load('test.yaml')`` or ``Config.of({...})`` gives a checked :class:`Config`; nothing is made before it has passed.
-``resolved(config)`` adds seed and versions, and what it gives can be run again. Needs no YADE.
+``Config.of({...})`` gives a checked :class:`Config`. Files: :mod:`hexmembrane.configuration.files`. Uses nothing of YADE.
 """
 
 import dataclasses
-import datetime
-import os
 import pathlib
-import platform
-import subprocess
-import sys
 from typing import Optional
 
-import numpy
-import yaml
-
-from hexmembrane.schema import REQUIRED, ConfigError, build, key, section, toDict
+from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, section
 
 #: Keys of the specimen that are files.
-_PATHS = ("packing", "gradation")
+PATHS = ("packing", "gradation")
+#: Poisson's ratio of a lattice whose bonds have no shear stiffness, and how near to it a value, written with six digits say, is it.
+_CENTRAL, _NEAR = 1 / 3, 1e-6
 
 
 @dataclasses.dataclass
@@ -29,8 +22,8 @@ class Specimen:
 
 	radius: float = key(REQUIRED, "radius of the specimen", "m", low=0, openLow=True)
 	height: float = key(REQUIRED, "height of the specimen", "m", low=0, openLow=True)
-	packing: Optional[str] = key(None, "packing file to take instead of making one; relative to the configuration's folder")
-	gradation: Optional[str] = key(None, "CSV file of the gradation (see gradation.py); relative to the configuration's folder")
+	packing: Optional[str] = key(None, "packing file to take instead of making one; relative to the configuration's folder", free=True)
+	gradation: Optional[str] = key(None, "CSV file of the gradation (see gradation.py); relative to the configuration's folder", free=True)
 	scale: Optional[float] = key(
 		None, "factor on the gradation's diameters; none with a wished number of grains: it follows from that", "", low=0, openLow=True
 	)
@@ -47,7 +40,14 @@ class Specimen:
 		low=0,
 		openLow=True,
 	)
-	friction: float = key(0.5, "coefficient of friction between grains, tan of the angle; also of a packing made under stress", "", low=0, high=5)
+	friction: float = key(
+		0.5,
+		"coefficient of friction mu between grains, tan of the angle, Fs <= mu Fn: in shear, in consolidation unless that has its own, "
+		"and in a packing made under stress",
+		"",
+		low=0,
+		high=5,
+	)
 	rollingFriction: float = key(0.0, "coefficient of rolling friction mu_r between grains, moment <= mu_r R1 R2/(R1 + R2) Fn", "", low=0, high=5)
 	packingRollingFriction: float = key(
 		0.0, "coefficient of rolling friction while a packing is made under stress; looser ones need it, it may be rollingFriction's value", "", low=0, high=5
@@ -81,7 +81,7 @@ class Membrane:
 		None, "radius of the membrane's spheres, adjusted so that rings close; none: from sizeRatio", "m", low=0, openLow=True
 	)
 	sizeRatio: float = key(
-		0.8, "R/r, membrane sphere to smallest grain radius, used without particleRadius", "", low=0, high=6.464, openLow=True
+		0.8, "R/r, membrane sphere to smallest grain radius, used without particleRadius; Eq. 1 is its upper limit", "", low=0, openLow=True
 	)
 	placement: str = key(
 		"outside", "inner surface ('outside') or centres ('centred') on the specimen's surface", "", choices=("outside", "centred")
@@ -94,7 +94,7 @@ class Membrane:
 	thickness: float = key(
 		3e-4, "thickness of the material; only young * thickness matters, twice pressure * grain radius or more", "m", low=0, openLow=True
 	)
-	poisson: float = key(1 / 3, "in-plane Poisson's ratio of the lattice; 1/3 has central forces only", "", low=0, high=0.33333334)
+	poisson: float = key(_CENTRAL, "in-plane Poisson's ratio of the lattice; 1/3 has central forces only", "", low=0, high=0.33333334)
 	density: float = key(1000.0, "density of the membrane's spheres", "kg/m3", low=0, openLow=True)
 	densityScaling: Optional[float] = key(
 		1.0, "factor on the mass of the membrane's spheres, for a longer time step where they set it; none: as much as lets the grains set it", "", low=1
@@ -103,7 +103,10 @@ class Membrane:
 	oRings: str = key("platens", "O-ring rows ride with the platens or stay fixed in space", "", choices=("platens", "fixed"))
 	surface: str = key("inner", "surface on which the pressure acts, inner surface or sphere centres", "", choices=("inner", "centre"))
 	areaRule: str = key(
-		"tributary", "area of a particle of group 2: 2 sqrt(3) R^2 or the circumscribed cube's (2R)^2", "", choices=("tributary", "cube")
+		"tributary",
+		"area of a particle of group 2: its share of the present inner surface, 2 pi (r - R)/n times the distance of the rings, or the circumscribed cube's (2R)^2",
+		"",
+		choices=("tributary", "cube"),
 	)
 	gain: float = key(0.05, "gain of the loop that brings group 2's transmitted pressure to the target, 0: open loop", "", low=0, high=1)
 	pressureGain: float = key(
@@ -114,8 +117,15 @@ class Membrane:
 		high=1,
 	)
 
+	@property
+	def centralBonds(self):
+		"""Whether the bonds carry normal forces only, so that the spheres need not turn."""
+		return self.poisson == _CENTRAL
+
 	def check(self, path):
-		if self.tensionOnly and self.poisson < 0.333333:
+		if abs(self.poisson - _CENTRAL) <= _NEAR:
+			self.poisson = _CENTRAL
+		if self.tensionOnly and not self.centralBonds:
 			raise ConfigError(
 				f"{path}.tensionOnly", True, f"needs central bonds, and poisson = {self.poisson:g} has shear springs", "leave poisson at 1/3"
 			)
@@ -161,7 +171,7 @@ class Consolidation:
 	friction: Optional[float] = key(
 		None, "coefficient of friction between grains until the end of consolidation; none: specimen.friction; lower: denser", "", low=0, high=5
 	)
-	unbalanced: float = key(1e-3, "limit of the unbalanced force ratio, membrane counted", "", low=0, high=0.1, openLow=True)
+	unbalanced: float = key(1e-3, "limit of the unbalanced force ratio, membrane counted", "", low=0, high=0.1, openLow=True, free=True)
 	tolerance: Optional[float] = key(
 		None,
 		"largest relative distance of transmitted pressure and axial stress from the pressure; none: 0.005, and 0.05 with membrane.pressureGain 0",
@@ -169,14 +179,16 @@ class Consolidation:
 		low=0,
 		high=0.5,
 		openLow=True,
+		free=True,
 	)
-	maxSteps: int = key(200000, "steps after which a test that has not come to rest stops with an error", "", low=100)
+	maxSteps: int = key(200000, "steps after which a test that has not come to rest stops with an error", "", low=100, free=True)
 	timeLimit: Optional[float] = key(
 		None,
 		"time that the servos of top platen and rigid wall have to reach each target once, else the test stops with an error; none: maxSteps alone limits",
 		"s",
 		low=0,
 		openLow=True,
+		free=True,
 	)
 
 
@@ -194,13 +206,13 @@ class Shear:
 class Numerics:
 	"""Time step, damping, contact detection, threads."""
 
-	dt: Optional[float] = key(None, "time step; none: safety times the critical one of contacts and membrane", "s", low=0, openLow=True)
+	dt: Optional[float] = key(None, "time step; none: safety times the critical one of contacts and membrane, rotations included", "s", low=0, openLow=True)
 	safety: float = key(0.5, "share of the critical time step", "", low=0, high=1, openLow=True)
 	damping: float = key(0.2, "local (Cundall) damping of NewtonIntegrator", "", low=0, high=1, openHigh=True)
 	verlet: float = key(0.2, "contact detection's skin in the reference tier, as a share of the smallest sphere's radius", "", low=0, high=1)
 	skin: float = key(0.3, "skin of the neighbour lists in the compact tier, as a share of the smallest sphere's radius", "", low=0, high=1, openLow=True)
 	substeps: int = key(100, "steps that the compact tier takes in one YADE iteration at most", "", low=1)
-	threads: Optional[int] = key(None, "OpenMP threads; none: as YADE was started", "", low=1, high=1024)
+	threads: Optional[int] = key(None, "OpenMP threads; none: as YADE was started", "", low=1, high=1024, free=True)
 
 
 @dataclasses.dataclass
@@ -209,8 +221,8 @@ class Output:
 
 	records: int = key(120, "rows of records.csv in shear", "", low=1, high=1000000)
 	consolidationSteps: int = key(500, "steps between rows in consolidation", "", low=1)
-	vtkEvery: int = key(20, "rows between VTK frames in shear, first and last state always; 0: no VTK", "", low=0)
-	checkpointEvery: int = key(20, "rows between checkpoints, start of the consolidation and end of each stage always; 0: only there", "", low=0)
+	vtkEvery: int = key(20, "rows between VTK frames in shear, first and last state always; 0: no VTK", "", low=0, free=True)
+	checkpointEvery: int = key(20, "rows between checkpoints, start of the consolidation and end of each stage always; 0: only there", "", low=0, free=True)
 	energy: bool = key(True, "track energies and record their balance")
 
 
@@ -218,12 +230,13 @@ class Output:
 class Config:
 	"""A whole test."""
 
-	title: str = key("triaxial test", "a name for the plot and the log")
+	title: str = key("triaxial test", "a name for the plot and the log", free=True)
 	tier: str = key(
 		"compact",
 		"how steps are taken: by one engine over flat arrays ('compact', an order of magnitude faster) or by YADE's own loop ('reference')",
 		"",
 		choices=("compact", "reference"),
+		free=True,
 	)
 	boundary: str = key(
 		"membrane", "lateral boundary of the specimen: flexible membrane or rigid cylinder wall; the packing is the same", "", choices=("membrane", "wall")
@@ -238,17 +251,17 @@ class Config:
 	output: Output = section(Output, "records, VTK, checkpoints")
 
 	@classmethod
-	def of(cls, given, folder="."):
+	def of(cls, values, folder="."):
 		"""A checked configuration from nested dictionaries; relative paths count from ``folder``.
 
 		:raises ConfigError: says key path, value, what is wrong and the fix.
 		"""
-		if isinstance(given, dict):
-			given = {name: value for name, value in given.items() if name != "made"}
-		config = build(cls, given)
+		if isinstance(values, dict):
+			values = {name: value for name, value in values.items() if name != "made"}
+		config = build(cls, values)
 		if config.membrane.placement == "centred" and config.membrane.particleRadius is None:
 			raise ConfigError("membrane.placement", "centred", "the soil's radius then follows from the particle's radius", "give membrane.particleRadius")
-		for name in _PATHS:
+		for name in PATHS:
 			path = getattr(config.specimen, name)
 			if path is not None:
 				path = pathlib.Path(folder, path).expanduser().resolve()
@@ -256,120 +269,3 @@ class Config:
 					raise ConfigError(f"specimen.{name}", str(path), "there is no such file", "correct the path")
 				setattr(config.specimen, name, str(path))
 		return config
-
-
-def merged(given, changes):
-	"""Nested dictionaries with changes: those of a section change its keys, everything else is replaced; neither argument is changed."""
-	made = dict(given)
-	for name, value in changes.items():
-		old = made.get(name)
-		made[name] = merged(old, value) if isinstance(old, dict) and isinstance(value, dict) else value
-	return made
-
-
-def derived(config, changes):
-	"""A checked configuration like ``config`` but for ``changes``, such as ``{"boundary": "wall", "specimen": {"seed": 2}}``.
-
-	:raises ConfigError: as :meth:`Config.of`.
-	"""
-	return Config.of(merged(toDict(config), changes))
-
-
-def load(path):
-	"""The checked configuration in a YAML file. With a key ``base``, another file relative to this one, it is that with this one's changes.
-
-	:raises ConfigError: a file is missing or no YAML, is its own base, or a key is wrong.
-	"""
-	return Config.of(*_layers(pathlib.Path(path), ()))
-
-
-def _layers(path, above):
-	"""(keys of the file and its bases, folder that relative paths count from); ``above``: the files that it is a base of."""
-	given = _read(path)
-	if not isinstance(given, dict) or "base" not in given:
-		return given, path.parent
-	changes = {name: value for name, value in given.items() if name != "base"}
-	if not isinstance(given["base"], str):
-		raise ConfigError("base", given["base"], "is not text", "give the YAML file that this one changes")
-	base = path.parent / given["base"]
-	if base.resolve() in (*above, path.resolve()):
-		raise ConfigError("base", given["base"], "is its own base", "correct the path")
-	below, folder = _layers(base, (*above, path.resolve()))
-	if not isinstance(below, dict):
-		raise ConfigError("base", str(base), "is not a mapping of keys", "write 'key: value' lines in it")
-	specimen = below.get("specimen")
-	if isinstance(specimen, dict):
-		paths = {name: os.path.join(folder, specimen[name]) for name in _PATHS if isinstance(specimen.get(name), str)}
-		below = merged(below, {"specimen": {name: os.path.abspath(os.path.expanduser(value)) for name, value in paths.items()}})
-	return merged(below, changes), path.parent
-
-
-def _read(path):
-	"""What the YAML file says."""
-	try:
-		text = path.read_text(encoding="utf-8")
-	except OSError as error:
-		raise ConfigError("configuration", str(path), f"cannot be read ({error.strerror})", "correct the path") from None
-	except UnicodeDecodeError:
-		raise ConfigError("configuration", str(path), "is not text in UTF-8", "give a YAML file") from None
-	try:
-		return yaml.load(text, Loader=_UniqueKeys)
-	except yaml.YAMLError as error:
-		where = getattr(error, "problem_mark", None)
-		line = f", line {where.line + 1}" if where else ""
-		problem = getattr(error, "problem", None) or error
-		raise ConfigError("configuration", f"{path}{line}", f"is not YAML ({problem})", "correct the line") from None
-
-
-class _UniqueKeys(yaml.SafeLoader):
-	"""PyYAML's safe loader, except that a key given twice is an error and not silently the last one."""
-
-	def construct_mapping(self, node, deep=False):
-		seen = set()
-		for place, _ in node.value:
-			name = self.construct_object(place, deep=True)
-			if not isinstance(name, str):
-				raise yaml.constructor.ConstructorError(None, None, f"key {name!r} is not text", place.start_mark)
-			if name in seen:
-				raise yaml.constructor.ConstructorError(None, None, f"key '{name}' is given twice", place.start_mark)
-			seen.add(name)
-		return super().construct_mapping(node, deep)
-
-
-def _commit():
-	"""The git commit of the checkout that this package is in ('-dirty' when changed), None elsewhere."""
-	here = os.path.dirname(os.path.abspath(__file__))
-	try:
-		said = subprocess.run(
-			["git", "-C", here, "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"], capture_output=True, text=True, timeout=10
-		)
-	except (OSError, subprocess.TimeoutExpired):
-		return None
-	return said.stdout.strip() if said.returncode == 0 else None
-
-
-def resolved(config):
-	"""The configuration with every default filled in and, under ``made``, date, versions and threads; ready for YAML."""
-	from hexmembrane import __version__
-
-	made = {
-		"date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
-		"hexmembrane": __version__,
-		"commit": _commit(),
-		"python": platform.python_version(),
-		"numpy": numpy.__version__,
-		"machine": platform.machine(),
-	}
-	if "yade" in sys.modules:
-		import yade.config
-
-		made.update(yade=yade.config.version, threads=yade.wrapper.Omega().numThreads)
-	return {**toDict(config), "made": made}
-
-
-def save(config, path):
-	"""Write ``resolved(config)`` as YAML, by temporary name and rename."""
-	path = pathlib.Path(path)
-	part = path.with_name(path.name + ".part")
-	part.write_text(yaml.safe_dump(resolved(config), sort_keys=False, allow_unicode=True, width=110), encoding="utf-8")
-	part.replace(path)

@@ -3,7 +3,7 @@
 
 import pathlib
 
-from hexmembrane.records import read
+from hexmembrane.output.records import read
 
 _MISSING = "no shear rows in {}: nothing to plot; fix: shear the specimen first"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The rigid cylinder wall as a test's lateral boundary; interface: :mod:`hexmembrane.lateral`."""
+"""The rigid cylinder wall as a test's lateral boundary."""
 
 import math
 
@@ -7,8 +7,7 @@ import numpy
 import yade
 from yade import O
 
-from hexmembrane import correction, vtk
-from hexmembrane.lateral import Parts, only
+from hexmembrane.scene.lateral_boundary import BoundaryParts, LateralBoundary, Surface, singleEngine
 
 #: Platens' radius over the specimen's: they reach under the wall's rim, so that a specimen that widens stays between them.
 _PLATENS = 1.5
@@ -16,22 +15,22 @@ _PLATENS = 1.5
 _STRIPS, _ROWS = 72, 24
 
 
-class RigidWall:
-	"""Handles: ``servo``, ``shape`` (the CylinderWall), ``axis`` (its centre)."""
+class RigidWall(LateralBoundary):
+	"""Handles: ``servo`` (RadialWallServo), ``shape`` (the CylinderWall), ``axis`` (its centre)."""
 
 	name = "wall"
 
 	def __init__(self, engines):
-		self.servo = only(engines, "RadialWallServo")
+		self.servo = singleEngine(engines, "RadialWallServo")
 		body = O.bodies[self.servo.wall]
 		self.shape, self.axis = body.shape, body.state.pos
 
 	@classmethod
 	def make(cls, config, packing):
 		"""A wall as wide as the packing; it reaches half the specimen's height beyond each end, so that no grain meets an end of it."""
-		given, grain, height = config.wall, config.specimen, config.specimen.height
+		keys, grain, height = config.wall, config.specimen, config.specimen.height
 		O.materials.append(
-			yade.LinearMat(emod=grain.emod, kratio=grain.kratio, friction=given.friction, density=grain.density, label="wall")
+			yade.LinearMat(emod=grain.emod, kratio=grain.kratio, friction=keys.friction, density=grain.density, label="wall")
 		)
 		body = yade.Body()
 		body.shape = yade.CylinderWall(radius=packing.radius, height=2 * height)
@@ -42,17 +41,17 @@ class RigidWall:
 
 		def engines(bottom, top):
 			servo = yade.RadialWallServo(
-				wall=wall, stress=0.0, bottomPlaten=bottom, topPlaten=top, damping=given.damping, tolerance=given.tolerance
+				wall=wall, stress=0.0, bottomPlaten=bottom, topPlaten=top, damping=keys.damping, tolerance=keys.tolerance
 			)
 			return [], [servo]
 
-		return Parts(
+		return BoundaryParts(
 			engines=engines,
 			platenRadius=_PLATENS * packing.radius,
 			overhang=0.0,
-			smallest=math.inf,
-			critical=math.inf,
-			log=[f"rigid wall: radius {1e3 * packing.radius:.4g} mm, friction {given.friction:g}"],
+			smallestRadius=math.inf,
+			criticalStep=math.inf,
+			log=[f"rigid wall: radius {1e3 * packing.radius:.4g} mm, friction {keys.friction:g}"],
 		)
 
 	@property
@@ -60,7 +59,7 @@ class RigidWall:
 		return self.servo.stress
 
 	@property
-	def applied(self):
+	def appliedPressure(self):
 		return self.servo.stress
 
 	def setPressure(self, pressure):
@@ -78,32 +77,20 @@ class RigidWall:
 	def volume(self, bottom, top):
 		return math.pi * self.shape.radius**2 * (top - bottom)
 
-	def endArea(self, _face):
+	def endArea(self, face):
 		return math.pi * self.shape.radius**2
 
 	def pressedArea(self, bottom, top):
 		return 2 * math.pi * self.shape.radius * (top - bottom)
 
-	def transmitted(self, _group):
+	def transmittedPressure(self, group):
 		"""The mean radial stress on the wall, the same for all groups."""
 		return self.servo.radialStress
-
-	def brokenBonds(self):
-		return 0
-
-	def unbalanced(self):
-		return 0.0
-
-	def carried(self, _bottom, _top):
-		return dict(correction.NONE)
 
 	def outside(self, points):
 		return numpy.hypot(points[:, 0] - self.axis[0], points[:, 1] - self.axis[1]) >= self.shape.radius
 
-	def addStiffness(self, _stiffness):
-		"""Nothing: the wall's contacts show all of it."""
-
-	def writeFrame(self, path, start):
+	def surface(self, startRadius):
 		"""The wall at its radius, from the height of the specimen's foot to its first head: pressure and normal displacement at points."""
 		angle = 2 * math.pi * numpy.arange(_STRIPS) / _STRIPS
 		z = numpy.repeat(numpy.linspace(self.axis[2] - self.shape.height / 4, self.axis[2] + self.shape.height / 4, _ROWS), _STRIPS)
@@ -115,6 +102,6 @@ class RigidWall:
 		)
 		points = {
 			"pressure": numpy.full(len(z), self.servo.stress),
-			"normal_displacement": numpy.full(len(z), self.shape.radius - start.radius),
+			"normal_displacement": numpy.full(len(z), self.shape.radius - startRadius),
 		}
-		vtk.write(path, numpy.column_stack([x, y, z]), triangles, points)
+		return Surface(numpy.column_stack([x, y, z]), triangles, points, {})

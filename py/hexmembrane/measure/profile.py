@@ -45,7 +45,9 @@ def shares(edges, low, high):
 
 	The lowest and the highest slice take what lies beyond the ends; an interval of no length lies in one slice whole.
 
-	:param edges: rising borders of the slices, n + 1 >= 2. :param low: starts. :param high: ends, >= low.
+	:param edges: rising borders of the slices, n + 1 >= 2.
+	:param low: starts.
+	:param high: ends, >= low.
 	:raises ValueError: borders that do not rise.
 	"""
 	edges = numpy.asarray(edges, dtype=float)
@@ -66,7 +68,9 @@ def shares(edges, low, high):
 def sliceSums(edges, start, branch, force):
 	"""Sum of F (x) l over the parts of the branches in each slice, an (n, 3, 3) array [N m]; over its volume it is the mean stress.
 
-	:param edges: heights of the borders [m]. :param start: (M, 3) where the branches begin [m]. :param branch: (M, 3) [m].
+	:param edges: heights of the borders [m].
+	:param start: (M, 3) where the branches begin [m].
+	:param branch: (M, 3) [m].
 	:param force: (M, 3) contact forces [N]; compression positive when they point along the branch.
 	"""
 	ends = start[:, 2], start[:, 2] + branch[:, 2]
@@ -95,13 +99,15 @@ def contacts(grains):
 def measure(scene, grains, count=16):
 	"""The :class:`Profile` of the scene as it stands, from the contacts of the last step.
 
-	:param scene: handles, :class:`hexmembrane.scene.Scene`, of a test in a flexible membrane. :param grains: ids of the grains. :param count: slices, >= 1.
+	:param scene: handles, :class:`hexmembrane.scene.handles.Scene`, of a test in a flexible membrane.
+	:param grains: ids of the grains.
+	:param count: slices, >= 1.
 	:raises ValueError: no slice.
 	"""
 	if count < 1:
 		raise ValueError(f"profile.count = {count}: no slice; fix: 1 or more")
-	scene.showContacts()
-	membrane = scene.lateral.membrane
+	scene.exportContacts()
+	membrane = scene.lateralBoundary.membrane
 	bottom, top = scene.faces()
 	edges = numpy.linspace(bottom, top, count + 1)
 	volume = numpy.array([membrane.enclosedVolume(low, high) for low, high in zip(edges, edges[1:])])

@@ -91,7 +91,7 @@ COLUMNS = (
 	Column("energy_elastic", "J", "elastic energy of the contacts; this and all energies: nan with output.energy: false", True),
 	Column("energy_membrane", "J", "elastic energy of the membrane's bonds, 0 with a rigid wall", True),
 	Column("energy_kinetic", "J", "kinetic energy, half a step before", True),
-	Column("energy_friction", "J", "dissipated by sliding and rolling since the stage began", True),
+	Column("energy_friction", "J", "dissipated by contacts since the stage began: sliding, rolling, broken contact bonds", True),
 	Column("energy_damping", "J", "dissipated by the local damping since the stage began", True),
 	Column(
 		"work_boundary",

@@ -22,7 +22,11 @@ class ConfigError(ValueError):
 
 @dataclasses.dataclass(frozen=True)
 class Key:
-	"""What is known of one key; ``low`` and ``high`` are inclusive unless the matching ``open...`` is set."""
+	"""What is known of one key.
+
+	``low`` and ``high`` are inclusive unless the matching ``open...`` is set. ``free``: the value may differ when a test is resumed, since it does
+	not change what has been computed.
+	"""
 
 	doc: str
 	unit: str = ""
@@ -31,6 +35,7 @@ class Key:
 	openLow: bool = False
 	openHigh: bool = False
 	choices: tuple = ()
+	free: bool = False
 
 	def range(self):
 		"""The allowed values in words, '' when everything of the type is allowed."""
@@ -46,9 +51,9 @@ class Key:
 		return not below and not above
 
 
-def key(default, doc, unit="", **limits):
-	"""A dataclass field for one configuration key; ``default=REQUIRED`` makes the key compulsory."""
-	return dataclasses.field(default=default, metadata={"key": Key(doc, unit, **limits)})
+def key(default, doc, unit="", **more):
+	"""A dataclass field for one configuration key; ``default=REQUIRED`` makes the key compulsory; ``more``: fields of :class:`Key`."""
+	return dataclasses.field(default=default, metadata={"key": Key(doc, unit, **more)})
 
 
 class _Required:
@@ -128,45 +133,57 @@ def _guess(name, known):
 	return f"did you mean '{close[0]}'? " if close else ""
 
 
-def build(cls, given, path=""):
+def build(cls, mapping, path=""):
 	"""An instance of the section ``cls`` from a mapping (or an instance, whose values are checked again).
 
 	:raises ConfigError: unknown key, wrong type, not finite, out of range, missing.
 	"""
-	if isinstance(given, cls):
-		given = toDict(given)
-	given = {} if given is None else given
-	if not isinstance(given, dict):
-		raise ConfigError(path or "configuration", given, "is not a mapping of keys", "write 'key: value' lines")
+	if isinstance(mapping, cls):
+		mapping = toDict(mapping)
+	mapping = {} if mapping is None else mapping
+	if not isinstance(mapping, dict):
+		raise ConfigError(path or "configuration", mapping, "is not a mapping of keys", "write 'key: value' lines")
 	hints = typing.get_type_hints(cls)
 	fields = {field.name: field for field in dataclasses.fields(cls)}
 	at = f"{path}." if path else ""
-	for name in given:
+	for name in mapping:
 		if name not in fields:
 			raise ConfigError(
-				f"{at}{name}", given[name], "unknown key", f"{_guess(name, fields)}known keys are {', '.join(fields)}"
+				f"{at}{name}", mapping[name], "unknown key", f"{_guess(name, fields)}known keys are {', '.join(fields)}"
 			)
 	values = {}
 	for name, field in fields.items():
 		if "section" in field.metadata:
-			values[name] = build(field.metadata["section"], given.get(name), at + name)
+			values[name] = build(field.metadata["section"], mapping.get(name), at + name)
 			continue
 		spec = field.metadata["key"]
-		if name in given:
-			values[name] = _value(at + name, given[name], hints[name], spec)
+		if name in mapping:
+			values[name] = _value(at + name, mapping[name], hints[name], spec)
 		elif field.default is REQUIRED:
 			raise ConfigError(at + name, None, "is missing", f"give {spec.doc}" + (f" ({spec.unit})" if spec.unit else ""))
 		else:
 			values[name] = field.default
-	made = cls(**values)
-	if hasattr(made, "check"):
-		made.check(path)
-	return made
+	instance = cls(**values)
+	if hasattr(instance, "check"):
+		instance.check(path)
+	return instance
 
 
-def toDict(made):
+def toDict(instance):
 	"""The section as nested plain dictionaries, in the order of the fields."""
-	return dataclasses.asdict(made)
+	return dataclasses.asdict(instance)
+
+
+def freeKeys(cls, path=""):
+	"""Paths of the keys in ``cls`` and its sections that are ``free``."""
+	paths = []
+	for field in dataclasses.fields(cls):
+		name = f"{path}.{field.name}" if path else field.name
+		if "section" in field.metadata:
+			paths += freeKeys(field.metadata["section"], name)
+		elif field.metadata["key"].free:
+			paths.append(name)
+	return paths
 
 
 def table(cls, path=""):
