@@ -104,7 +104,7 @@ class Membrane:
 	surface: str = key("inner", "surface on which the pressure acts, inner surface or sphere centres", "", choices=("inner", "centre"))
 	areaRule: str = key(
 		"tributary",
-		"area of a particle of group 2: its share of the present inner surface, 2 pi (r - R)/n times the distance of the rings, or the circumscribed cube's (2R)^2",
+		"area of a particle of group 2: its share of the present inner surface, 2 pi (r - R)/n times the rings' distance, or the cube's (2R)^2",
 		"",
 		choices=("tributary", "cube"),
 	)
