@@ -3,8 +3,8 @@
 
 The mean stress of a slice is (1/V) sum F (x) l over the contacts of the grains, compression positive: F the contact force on the
 second body, l the branch from the first body to the second. Between grains the branch joins the centres; to membrane and platens it
-ends at the contact point. A branch that crosses a border between slices counts in each with the part that lies in it, so that the
-slices, weighted with their volumes, add up to the whole specimen's stress exactly.
+ends at the contact point. A branch that crosses a border between slices counts in each with the part that lies in it. The slices,
+weighted with their volumes, then add up to the whole specimen's stress exactly.
 """
 
 import dataclasses

@@ -2,7 +2,7 @@
 """The stages of a test on the scene in ``O``: consolidation and shear, with records, VTK frames and checkpoints in one folder.
 
 Python is not in the loop of a step: YADE runs in chunks of steps between rows. After each checkpoint the test goes on from the
-saved state itself, so that a resumed run and one that was never stopped take the same steps (bit by bit on one thread).
+saved state itself. A resumed run and one that was never stopped take the same steps for that reason, bit by bit on one thread.
 """
 
 import math

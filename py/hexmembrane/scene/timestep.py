@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The critical time step of central differences, 2/omega: estimates before there are contacts, and a lower bound with them.
 
-A sphere of mass m and radius R has the moment of inertia I = 0.4 m R^2, so a shear spring ks turns it as it would push a mass of
-0.4 m: where kn/ks < 3, rotations are faster than translations. Uses nothing of YADE.
+A sphere of mass m and radius R has the moment of inertia 0.4 m R^2. A shear spring turns it as it would push a mass of 0.4 m. Where
+kn/ks < 3, rotations are therefore faster than translations. Uses nothing of YADE.
 """
 
 import math
