@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import yade
-from hexmembrane.platens import platen
+from hexmembrane.scene.platens import platen
 from tiers import engines
 from yade import O, utils
 

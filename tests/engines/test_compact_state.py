@@ -3,11 +3,11 @@
 
 import builtins
 
-import hexmembrane.scene
 import numpy as np
 import pytest
 import yade
-from hexmembrane import measure
+from hexmembrane.measure import rows as measure
+from hexmembrane.scene.handles import Scene
 from specimenScene import bondGrains, build
 from tiers import TIERS, engines, forces, loop, owed, run, state, writeContacts
 
@@ -202,7 +202,7 @@ def test_aRowOfRecordsNeedsNoExport(O, options):
 		O.trackEnergy = True
 		build(tier, spin=0.02, velocity=0.05, **options)
 		O.engines = [*O.engines, yade.RunawayGuard()]
-		scene = hexmembrane.scene.Scene()
+		scene = Scene()
 		run(20)
 		reference = measure.Reference.of(scene)
 		run(100)
