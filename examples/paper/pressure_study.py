@@ -13,6 +13,7 @@ for a packing of 300 grains: one membrane of 2.5 mm at 100 kPa, to 0.5 % of stra
 
 import argparse
 import pathlib
+import math
 import sys
 
 import hexmembrane
@@ -26,7 +27,7 @@ from yade import O
 CONFIGURATION = pathlib.Path(hexmembrane.__file__).resolve().parents[2] / "examples" / "paper" / "flexible-100.yaml"
 OURS = {}
 STUDY = {
-	"membrane": {"surface": "centre", "areaRule": "cube", "gain": 0.0, "pressureGain": 0.0, "platenRows": 2},
+	"membrane": {"surface": "centre", "areaRule": "cube", "servoTime": math.inf, "pressureTime": math.inf, "platenRows": 2},
 	"consolidation": {"tolerance": 0.3},
 }
 SIZES = (1.25e-3, 1.0e-3, 0.75e-3, 0.5e-3, 0.25e-3)

@@ -14,6 +14,7 @@ ends held: the rows beside the platens are held where they are, radially; they m
 
 import argparse
 import json
+import math
 import pathlib
 import sys
 
@@ -33,7 +34,7 @@ SCHEMES = {"three-stage": "three-stage", "main": "pressure on the main body only
 SETTINGS = {
 	"specimen": {"grains": 1000},
 	# Open loops: what a scheme does, not what a closed loop makes of it.
-	"membrane": {"gain": 0.0, "pressureGain": 0.0},
+	"membrane": {"servoTime": math.inf, "pressureTime": math.inf},
 	"shear": {"strain": 0.06},
 	"output": {"records": 24, "vtkEvery": 0, "checkpointEvery": 0},
 	# A script that blocks degrees of freedom of membrane particles is understood by YADE's own loop alone.

@@ -41,6 +41,7 @@ public:
 	void addForces(const HexMembrane&, const vector<RingRange>& rings, const hexmembrane::PaddedRings& force, const hexmembrane::PaddedRings* torque,
 	               WorkMeter* meter) override
 	{
+		if (meter) takeOver(*meter, rings);
 		for (const RingRange& range : rings) {
 			loop.terms.push_back({&force, range.first, range.last, meter != nullptr, {}});
 			loop.meters.push_back(meter);
@@ -49,6 +50,9 @@ public:
 	}
 	void grip(const HexMembrane&, const vector<std::pair<int, Vector3r>>& rings, WorkMeter& meter) override
 	{
+		vector<RingRange> list;
+		for (const auto& [ring, velocity] : rings) list.push_back({ring, ring});
+		takeOver(meter, list);
 		for (const auto& [ring, velocity] : rings) {
 			loop.grips.push_back({ring, velocity, {}});
 			loop.gripMeters.push_back(&meter);
@@ -64,6 +68,17 @@ public:
 	Real stiffness(Body::id_t boundary, const Vector3r& along) override { return state.spheres.boundaryContacts[require(boundary)].stiffness(along); }
 
 private:
+	void takeOver(WorkMeter& meter, const vector<RingRange>& rings) const
+	{
+		const int n = state.sheet.stencil.perRing;
+		vector<int> list;
+		meter.takeOver(loop.scene->iter, [&](size_t point) {
+			if (list.empty())
+				for (const RingRange& range : rings)
+					for (int k = range.first; k <= range.last; ++k) list.push_back(k);
+			return state.sheet.position->get(list.at(point / n), static_cast<int>(point % n));
+		});
+	}
 	int require(Body::id_t boundary) const
 	{
 		const int b = state.boundaryIndex(boundary);
@@ -79,11 +94,23 @@ private:
 // Labels are names in Python, as YADE makes them of the labels in O.engines; also of engines that have just been loaded.
 void CompactLoop::postLoad(CompactLoop&)
 {
+	labelled.clear();
+	labelEngines();
+}
+
+void CompactLoop::labelEngines()
+{
+	vector<string> labels;
+	for (const auto& engine : engines) labels.push_back(engine ? engine->label : "");
+	if (labels == labelled) return;
+	labelled = labels;
 	const gilLock lock;
 	boost::python::object builtins = boost::python::import("builtins");
 	for (const auto& engine : engines)
 		if (engine && !engine->label.empty()) builtins.attr(engine->label.c_str()) = engine;
 }
+
+bool CompactLoop::canStep(const shared_ptr<Engine>& engine) { return dynamic_cast<const Stepped*>(engine.get()); }
 
 boost::python::list CompactLoop::contract()
 {
@@ -113,6 +140,7 @@ void CompactLoop::prepareEngines()
 	hexmembrane::requirePositive("O.dt", scene->dt, "s");
 	requireCompactScene(*scene, *this, engines);
 	warnReaders();
+	labelEngines();
 	stepped.clear();
 	std::set<string> classes;
 	const HexMembrane* held = nullptr;
@@ -125,10 +153,10 @@ void CompactLoop::prepareEngines()
 			throw std::runtime_error(
 			        "CompactLoop.engines: a " + name +
 			        " cannot be stepped inside; fix: put it into O.engines, where it acts between iterations, or use the reference tier");
+		if (std::count(engines.begin(), engines.end(), engine) > 1)
+			throw std::runtime_error("CompactLoop.engines: has two " + name + ", the same engine twice; fix: leave one out");
 		if (!classes.insert(name).second && !one->mayBeSeveral())
 			throw std::runtime_error("CompactLoop.engines: has two " + name + "; fix: one at most");
-		if (std::count(engines.begin(), engines.end(), engine) > 1)
-			throw std::runtime_error("CompactLoop.engines: has the same " + name + " twice; fix: leave one out");
 		engine->scene = scene;
 		one->prepare();
 		one->requireCompactScene();
@@ -229,8 +257,8 @@ void CompactLoop::moveSheet()
 	                                                     spheres.places.data() + grains,
 	                                                     spheres.motions.data() + grains};
 	int lost = state->motion.move(lastDt, damping, 0.5 * spheres.skin(), terms, grips, contacts, *sheet.position, state->velocity(), energies, threads);
-	if (sheet.spin) {
-		const int lostSpin = state->motion.moveSpins(lastDt, damping, spheres.inertia.back(), torques, spheres.loads.data() + grains, *sheet.spin,
+	if (sheet.spin && state->spinInertia > 0) {
+		const int lostSpin = state->motion.moveSpins(lastDt, damping, state->spinInertia, torques, spheres.loads.data() + grains, *sheet.spin,
 		                                             spheres.motions.data() + grains, energies);
 		if (lost < 0) lost = lostSpin;
 	}
@@ -242,6 +270,7 @@ void CompactLoop::moveSheet()
 		if (!meter) return;
 		works[meter].before += halves.before;
 		works[meter].after += halves.after;
+		works[meter].atOnce += halves.atOnce;
 	};
 	for (size_t t = 0; t < terms.size(); ++t) add(meters[t], terms[t].work);
 	for (size_t g = 0; g < grips.size(); ++g) add(gripMeters[g], grips[g].work);

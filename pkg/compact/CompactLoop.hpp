@@ -21,6 +21,7 @@ public:
 	int contactCount() const;
 	Real criticalTimeStep();
 	static boost::python::list contract();
+	static bool canStep(const shared_ptr<Engine>& engine);
 
 	bool keepsContacts() const override { return state && !exported; }
 	vector<Vector3r> contactForces(const HexMembrane& membrane) const override;
@@ -28,6 +29,8 @@ public:
 private:
 	// CompactLoop.cpp: the run of a step
 	void prepareEngines();
+	//! Makes labels names in Python, when they are new.
+	void labelEngines();
 	//! Says so when a tool of YADE will find no contacts.
 	void warnReaders();
 	long stepsToDo() const;
@@ -73,6 +76,7 @@ private:
 	int threads = 1;
 	Real lastDt = 0;
 	bool warned = false;
+	vector<string> labelled;
 
 	vector<int> workIndices;
 	int elasticIx = -1, kineticIx = -1, dampIx = -1;
@@ -80,7 +84,7 @@ private:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(CompactLoop,GlobalEngine,
 		"The compact tier: replaces collider, interaction loop and :yref:`NewtonIntegrator` for scenes of spheres of :yref:`LinearMat`, :yref:`Platens<Platen>`, a :yref:`CylinderWall` and one :yref:`HexMembrane`, with the same laws and the same engines as the reference tier. It keeps flat arrays sorted in space, finds neighbours with a cell grid and a skin, and takes many steps in one YADE iteration.\n\n"
-		"``O.engines`` is then :yref:`ForceResetter`, this, and whatever looks at the scene between iterations; the engines of membrane and boundaries go into :yref:`engines<CompactLoop.engines>`, as the same objects that the reference tier has in ``O.engines``, and act in the order of that list. Their attributes are read and written as there, their labels are names as YADE's own are, also after ``O.load``.\n\n"
+		"``O.engines`` is then :yref:`ForceResetter`, this, and whatever looks at the scene between iterations; the engines of membrane and boundaries go into :yref:`engines<CompactLoop.engines>`, as the same objects that the reference tier has in ``O.engines``, and act in the order of that list. Their attributes are read and written as there, their labels are names as YADE's own are, from the first step on and after ``O.load`` (``O.labeledEngine`` does not find them).\n\n"
 		"One YADE iteration takes :yref:`substeps<CompactLoop.substeps>` steps, fewer when ``O.run(n)`` or ``O.stopAtTime`` asks for it; ``O.iter`` and ``O.time`` count steps. Before it the bodies are read, after it positions, velocities, orientations and forces stand in ``O.bodies`` and ``O.forces``. "
 		"What a script may change between iterations, and what is refused, is one table: :yref:`contract<CompactLoop.contract>`. Forces that other engines have added before it are held for the whole iteration; so :yref:`GravityEngine` before it acts as in the reference tier. What is refused leaves everything as it was.\n\n"
 		"Contacts live in the arrays. Our own classes read them there; YADE's tools read ``O.interactions``, which :yref:`exportContacts<CompactLoop.exportContacts>` or :yref:`exportPeriod<CompactLoop.exportPeriod>` fills. Real contacts found there at the first step are taken over with their history.\n\n"
@@ -109,6 +113,7 @@ private:
 		.def("exportContacts",&CompactLoop::exportContacts,"Writes all touching contacts, as of the last step, to ``O.interactions`` (:yref:`ScGeom` and :yref:`LinearPhys` with forces, moments, bonds), replacing what is there. They are cleared before the next step.")
 		.def("contactCount",&CompactLoop::contactCount,"Number of touching contacts, boundaries and membrane included.")
 		.def("contract",&CompactLoop::contract,"What is done with each attribute that a script may change between iterations: a list of (of, attribute, 'read' | 'watched' | 'refused', what). Read: acts from the next iteration on. Watched: a change makes the tier collect the scene anew. Refused: an error with body id and fix, before anything is changed.").staticmethod("contract")
+		.def("canStep",&CompactLoop::canStep,(boost::python::arg("engine")),"Whether an engine can be stepped inside, by its class.").staticmethod("canStep")
 		.def("criticalTimeStep",&CompactLoop::criticalTimeStep,"Critical time step [s] of central differences, $2/\\omega$, with the highest frequency $\\omega$ of the contacts and membrane bonds as they are now (all sticking), by power iteration to about 1 %.")
 	);
 	// clang-format on

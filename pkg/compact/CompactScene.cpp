@@ -22,6 +22,8 @@ void CompactLoop::collect(const Sheet& sheet)
 	const bool loaded = !state && !contactFields.empty();
 	auto next = std::make_unique<CompactState>(*scene, sheet);
 	named("CompactLoop", {}, [&] { next->spheres.setSkin(usedSkin(next->spheres)); });
+	const int lost = next->spheres.nowhere();
+	if (lost >= 0) refuseBody(lost, "has a position that is not finite", "find out what sent it away, or load the last checkpoint");
 	const vector<KeptContact> kept = loaded ? savedContacts() : contactsSoFar();
 	if (!loaded || !continueLists(*next)) named("CompactLoop", {}, [&] { next->spheres.makeLists(); });
 	next->indexSpheres();

@@ -74,7 +74,8 @@ void CompactState::collectSheet(const Scene& scene, vector<SphereRow>& rows)
 		if (turns && !sheet.spin)
 			refuseBody(id, "of the membrane is free to turn, and bonds without shear stiffness do not hold it",
 			           "HexMembrane(rotations=False), bonds with ks > 0, or use the reference tier");
-		if (turns && b->state->inertia[0] != (*scene.bodies)[sheet.ids->front()]->state->inertia[0])
+		if (turns && spinInertia == 0) spinInertia = one.inertia;
+		if (turns && one.inertia != spinInertia)
 			refuseBody(id, "of the membrane has another inertia than the rest", "give all the same, or use the reference tier");
 	}
 	motion = hexmembrane::MembraneMotion(sheet.stencil);

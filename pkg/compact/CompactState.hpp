@@ -61,6 +61,7 @@ public:
 	hexmembrane::MembraneMotion motion; //!< of the sheet's particles
 	Sheet sheet;
 	vector<Body::id_t> boundaryIds;
+	Real spinInertia = 0; //!< of the sheet's particles that turn (kg m2), 0: none turns
 
 private:
 	using SphereRow = hexmembrane::SphereAssembly::Sphere;

@@ -97,6 +97,8 @@ protected:
 class ContactKeeper {
 public:
 	virtual ~ContactKeeper() = default;
+	//! The one of the scene's engines that is not dead; none: a scene of the reference tier.
+	static const Engine* of(const Scene& scene);
 	//! The one of the scene that holds contacts now; none: they are in O.interactions.
 	static const ContactKeeper* in(const Scene& scene);
 	virtual bool keepsContacts() const = 0;

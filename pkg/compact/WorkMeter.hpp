@@ -4,6 +4,7 @@
 #include "kernels/compact/MembraneMotion.hpp"
 
 #include <core/Scene.hpp>
+#include <functional>
 #include <lib/serialization/Serializable.hpp>
 
 namespace yade {
@@ -13,6 +14,10 @@ class WorkMeter : public Serializable {
 public:
 	//! The compact tier's way: the halves of a step's work before and after its positions.
 	void add(long iter, const hexmembrane::MembraneMotion::HalfWorks& halves);
+	//! Where the last step was one of the reference tier: the half of its work that led on to these positions, of the points in its order.
+	void takeOver(long iter, const std::function<Vector3r(size_t)>& position);
+	//! Where the last step was one of the compact tier: the half of this step's work that led here, the points having come these ways (m).
+	void takeOver(long iter, const vector<Vector3r>& forces, const std::function<Vector3r(size_t)>& way);
 	//! The reference tier's way: forces on points at their positions of this step; both are taken over. `atOnce` is work that is done in this step alone (J).
 	void add(long iter, vector<Vector3r>& forces, vector<Vector3r>& positions, Real atOnce = 0);
 	//! Enters minus the work under this name: energy that comes in counts negative, as YADE has it with gravity.

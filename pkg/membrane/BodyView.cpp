@@ -15,6 +15,8 @@ void Stepped::stepOverBodies(GlobalEngine& self)
 {
 	Scene& scene = *self.scene;
 	const string who = self.getClassName();
+	if (const auto* keeper = ContactKeeper::of(scene))
+		throw std::runtime_error(who + ": it stands in O.engines beside a " + keeper->getClassName() + ", where it would act once in many steps; fix: put it into its engines");
 	bool integrated = false;
 	for (const auto& engine : scene.engines) {
 		if (dynamic_cast<const NewtonIntegrator*>(engine.get())) integrated = true;
@@ -30,13 +32,17 @@ void Stepped::stepOverBodies(GlobalEngine& self)
 	bookWorks();
 }
 
+const Engine* ContactKeeper::of(const Scene& scene)
+{
+	for (const auto& engine : scene.engines)
+		if (!engine->dead && dynamic_cast<const ContactKeeper*>(engine.get())) return engine.get();
+	return nullptr;
+}
+
 const ContactKeeper* ContactKeeper::in(const Scene& scene)
 {
-	for (const auto& engine : scene.engines) {
-		const auto* keeper = dynamic_cast<const ContactKeeper*>(engine.get());
-		if (keeper && !engine->dead && keeper->keepsContacts()) return keeper;
-	}
-	return nullptr;
+	const auto* keeper = dynamic_cast<const ContactKeeper*>(of(scene));
+	return keeper && keeper->keepsContacts() ? keeper : nullptr;
 }
 
 const hexmembrane::PaddedRings& BodyView::positions(const HexMembrane& membrane)
@@ -86,23 +92,27 @@ void BodyView::addForces(const HexMembrane& membrane, const vector<RingRange>& r
 		at[p] = x->get(k, i);
 	}
 	if (bad >= 0) throwNotFinite(who + ": force", membrane.ids[bad], scene);
-	if (meter) meter->add(scene.iter, forces, at);
+	if (!meter) return;
+	meter->takeOver(scene.iter, forces, [&](size_t p) { return Vector3r(scene.dt * (*scene.bodies)[membrane.ids[list[p / n] * n + p % n]]->state->vel); });
+	meter->add(scene.iter, forces, at);
 }
 
 void BodyView::grip(const HexMembrane& membrane, const vector<std::pair<int, Vector3r>>& rings, WorkMeter& meter)
 {
 	scene.forces.sync();
-	vector<Vector3r> held, at;
+	vector<Vector3r> held, at, ways;
 	Real speeding = 0;
 	for (const auto& [ring, velocity] : rings)
 		for (int i = ring * membrane.perRing; i < (ring + 1) * membrane.perRing; ++i) {
 			State& state = *membrane.body(scene, i, who)->state;
 			speeding += 0.5 * state.mass * (velocity.squaredNorm() - state.vel.squaredNorm());
+			ways.push_back(scene.dt * state.vel);
 			state.vel = velocity;
 			state.isDamped = false; // else NewtonIntegrator books a dissipation that does not take place
 			held.push_back(-scene.forces.getForce(membrane.ids[i]));
 			at.push_back(state.pos);
 		}
+	meter.takeOver(scene.iter, held, [&](size_t p) { return ways[p]; });
 	meter.add(scene.iter, held, at, speeding);
 }
 

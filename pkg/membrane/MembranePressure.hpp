@@ -61,7 +61,7 @@ private:
 		"'inner' (default) puts it on the surface one sphere radius further in, where the membrane touches the soil, which takes this bias away; the forces still act at the centres (a moment of the order of R times their tangential part remains, zero on a tube by symmetry).\n\n"
 		"Open loop with an infinite :yref:`timeConstant<MembranePressure.timeConstant>` $T$ (default): the pressure given is on the triangles, and a membrane that is stretched round the soil presses with its own tension beside it. "
 		"With a finite one the engine closes the loop (membrane only): an integral controller multiplies the pressure by a factor $f$, $T\\dot f=(p-p_t)/p$ with $p_t$ the mean pressure which group 3 transmits (:yref:`HexMembrane.transmittedPressure`), within 1/:yref:`maxFactor<MembranePressure.maxFactor>` and maxFactor, so that the soil receives what was asked for. "
-		"It is corrected 20 times within $T$. Choose $T$ so that the specimen answers meanwhile: 25 times $d\\sqrt{\\rho/p}$ is slow and safe.\n\n"
+		"It is corrected 20 times within $T$. Choose $T$ so that the specimen answers meanwhile: 10 times $d\\sqrt{\\rho/p}$ is slow and safe.\n\n"
 		"Positive pressure pushes from outside inwards. With :yref:`O.trackEnergy<Omega.trackEnergy>` minus the work is entered as 'pressureWork' (energy that comes in counts negative, as YADE does with gravity).\n\n"
 		"Errors: ``ValueError`` for parameters (neither or both of membrane and mesh, a pressure that is NaN, indices beyond ids, a closed loop on a mesh), ``RuntimeError`` for a body erased or a force not finite (with body id and iteration).\n\n"
 		"Example::\n\n\tMembranePressure(membrane=m,pressure=100e3)\n\tMembranePressure(ids=[4,7,9],triangles=[(0,1,2)],surface='centre',pressure=1e3)",

@@ -36,7 +36,7 @@ private:
 		"Confining pressure on the rows beside the platens (group 2 of a :yref:`HexMembrane`): a horizontal force on each particle toward the present axis of its ring, $F=f\\,\\sigma_3 A\\,n_r$ (Eq. 2 of the source study). Stands before :yref:`NewtonIntegrator`.\n\n"
 		"Area $A$ of a particle: 'tributary' (default), its share of the ring's present inner surface, $2\\pi(\\bar r-R)/n$ times half the distance of the neighbouring rings; 'cube', the source study's $(2R)^2$, 15.47 % more than the lattice has.\n\n"
 		"Open loop with an infinite :yref:`timeConstant<MembraneRadialServo.timeConstant>` $T$ (default): $f=1$. With a finite one an integral controller closes the loop, $T\\dot f=(\\sigma_3-p_t)/\\sigma_3$ with $p_t$ the mean pressure that group 2 transmits (:yref:`HexMembrane.transmittedPressure`), "
-		"within 0 and :yref:`maxFactor<MembraneRadialServo.maxFactor>`. It is corrected 20 times within $T$. Choose $T$ so that the contacts answer meanwhile: 10 times $d\\sqrt{\\rho/p}$ is slow and safe.\n\n"
+		"within 0 and :yref:`maxFactor<MembraneRadialServo.maxFactor>`. It is corrected 20 times within $T$. Choose $T$ so that the contacts answer meanwhile: 4 times $d\\sqrt{\\rho/p}$ is slow and safe.\n\n"
 		"Positive pressure pushes toward the axis. With :yref:`O.trackEnergy<Omega.trackEnergy>` minus the work is entered as 'radialServoWork'.\n\n"
 		"Errors: ``ValueError`` for parameters, ``RuntimeError`` for a membrane not generated or without group 2, a body erased.\n\n"
 		"Example::\n\n\tMembraneRadialServo(membrane=m,pressure=100e3)",

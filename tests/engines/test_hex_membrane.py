@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from contactScene import sphere
 from membraneScene import HEIGHT, KN, RADIUS, inward, makeMembrane, positions, slack
-from tiers import engines, owed
+from tiers import engines
 
 
 def test_bodiesAreOrdinarySpheres(O):
@@ -53,9 +53,8 @@ def test_originMovesEverything(O):
 	assert m.meanRadius() == pytest.approx(RADIUS, rel=1e-12)
 
 
-def test_transmittedPressureOfOneContact(O, tier, request):
+def test_transmittedPressureOfOneContact(O, tier):
 	"""One grain pressed on one particle by 1e-6 m: the pressure is that radial force, kn u, over the inner area."""
-	owed(request, tier, "HexMembrane.transmittedPressure reads O.interactions")
 	m = makeMembrane()
 	index = m.perRing * (m.rings // 2)
 	x = O.bodies[m.ids[index]].state.pos

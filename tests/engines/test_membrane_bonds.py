@@ -95,6 +95,10 @@ def test_reportedStepIsTheCriticalOne(O, tier, springs, share, steps, grows):
 	O.dt = share * bonds.criticalTimeStep()
 	run(1)
 	start = bonds.elasticEnergy() + utils.kineticEnergy()
+	if grows and tier == "compact":
+		with pytest.raises(RuntimeError, match="half a skin"):
+			run(10 * steps)
+		return
 	run(steps)
 	# the energies of leapfrog oscillate near the limit; beyond it the fastest mode grows by a factor of 2.4 a step
 	assert (bonds.elasticEnergy() + utils.kineticEnergy() > 3 * start) == grows

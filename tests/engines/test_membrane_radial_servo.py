@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from membraneScene import coreStep, forcesOn, makeMembrane, pressOnCore, positions, slack
-from tiers import engines, find, owed, run, state
+from tiers import engines, find, run, state
 from yade import MembraneBonds, MembraneRadialServo
 
 P = 1e5
@@ -64,8 +64,7 @@ def test_closedLoopReachesItsTarget(O, tier):
 	assert not servo.saturated
 
 
-def test_whatArrivesIsReadFromTheLastStep(O, tier, request):
-	owed(request, tier, "HexMembrane.transmittedPressure reads O.interactions")
+def test_whatArrivesIsReadFromTheLastStep(O, tier):
 	m, servo = pressedOnCore(tier)
 	assert m.transmittedPressure(2) == pytest.approx(servo.transmitted, rel=1e-3)
 

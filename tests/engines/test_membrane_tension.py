@@ -8,7 +8,7 @@ import pytest
 import yade
 from hexmembrane.scene.membrane_loads import endHeights, membraneLoads
 from membraneScene import HEIGHT, core, forcesOn, makeMembrane, positions, shake
-from tiers import engines, owed, run
+from tiers import engines, run
 from yade import MembraneBonds, MembraneORings, MembranePressure, MembraneRadialServo, O
 
 P = 1e5
@@ -26,13 +26,12 @@ def coreScene(tier, stretch):
 	return m, bonds, pressure
 
 
-def test_appliedPressureAndTheMembranesShareArrive(O, tier, request):
+def test_appliedPressureAndTheMembranesShareArrive(O, tier):
 	"""transmitted = applied + share, with a share that is as large as the pressure.
 
 	To 0.3 % with the nominal pressure (34 spheres a ring: the applied forces belong to a polygon, whose perimeter is 1 - (pi/n)^2/6 of the
 	circle's), and to rounding and what is left of motion with the radial parts of the forces that were really applied.
 	"""
-	owed(request, tier, "HexMembrane.transmittedPressure and transmittedByRing read O.interactions")
 	m, bonds, pressure = coreScene(tier, 0.01)
 	run(3000)
 	assert np.linalg.norm(forcesOn([i for i, g in zip(m.ids, m.groups) if g != 1]), axis=1).max() < 1e-4
@@ -58,9 +57,8 @@ def test_appliedPressureAndTheMembranesShareArrive(O, tier, request):
 
 
 @pytest.mark.parametrize("kind", ["central", "shear", "broken"])
-def test_axialPullIsTheForceOnAllThatIsAbove(O, tier, kind, request):
+def test_axialPullIsTheForceOnAllThatIsAbove(O, tier, kind):
 	"""Bond forces are internal: those on the particles above a plane add up to the pull through it, with shear forces and broken bonds too."""
-	owed(request, tier, "MembraneBonds.axialTension is taken at the places after the step, O.forces before")
 	m = makeMembrane(rotations=kind != "central")
 	shake(m, 2e-4)
 	springs = {"central": {}, "shear": dict(ks=200.0), "broken": dict(ks=200.0, tensileStrength=0.03)}[kind]

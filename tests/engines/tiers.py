@@ -15,7 +15,6 @@ tier and says why.
 """
 
 import numpy as np
-import pytest
 import yade
 from yade import O
 
@@ -104,9 +103,3 @@ def forces(ids=None):
 	"""Forces and torques of the last step, one row a body."""
 	ids = [b.id for b in O.bodies] if ids is None else ids
 	return np.array([tuple(O.forces.f(i)) + tuple(O.forces.t(i)) for i in ids])
-
-
-def owed(request, tier, why):
-	"""Let a test fail in the compact tier, which does not do yet what it asks for; in the reference tier it must pass."""
-	if tier == "compact":
-		request.applymarker(pytest.mark.xfail(strict=False, reason="lead: " + why))

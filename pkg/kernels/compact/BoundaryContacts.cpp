@@ -15,7 +15,7 @@ bool BoundaryContacts::restore(int sphere, const Contact& contact)
 	return true;
 }
 
-void BoundaryContacts::rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfSphere& springs)
+ContactWorks BoundaryContacts::rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfSphere& springs)
 {
 	BoundaryContacts old;
 	old.spheres.swap(spheres);
@@ -24,7 +24,13 @@ void BoundaryContacts::rebuild(std::vector<int> near, const std::vector<int>& ne
 	spheres = std::move(near);
 	store.start(spheres.size(), kinds);
 	for (std::size_t c = 0; c < spheres.size(); ++c) store.setSprings(int(c), springs(spheres[c]));
-	old.forEachTouching([&](int i, const Contact& contact) { restore(newIndex[i], contact); });
+	ContactWorks lost;
+	old.forEachTouching([&](int i, const Contact& contact) {
+		const auto at = std::lower_bound(spheres.begin(), spheres.end(), newIndex[i]);
+		if (at != spheres.end() && *at == newIndex[i]) lost += worksOfLostSprings(contact.memory, contact.law, store.law(int(at - spheres.begin())));
+		restore(newIndex[i], contact);
+	});
+	return lost;
 }
 
 void BoundaryContacts::sweep(int from, int to, const Boundary& boundary, const std::vector<Place>& places, const std::vector<Motion>& motions,

@@ -43,7 +43,7 @@ public:
 	using OfSphere = std::function<SpringsOfKind(int)>;
 
 	/// New list of spheres that are near; memories of the old one move over, see PairContacts::rebuild.
-	void rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfSphere& springs);
+	ContactWorks rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfSphere& springs);
 
 	/// One step of the spheres from .. to - 1: their loads are added, what the boundary receives is added to `received`.
 	void sweep(int from, int to, const Boundary& boundary, const std::vector<Place>& places, const std::vector<Motion>& motions, std::vector<Load>& loads,

@@ -14,7 +14,7 @@ void ContactStore::start(std::size_t count, const std::vector<PairKind<double>>&
 
 void ContactStore::put(int p, const Contact& contact)
 {
-	contacts[p].memory = withoutLostSprings(contact.memory, lawOf(contacts[p].springs, table[kinds[p]]));
+	contacts[p].memory = withoutLostSprings(contact.memory, law(p));
 	bits[p] = contact.bits;
 	if (!contact.bonded()) return;
 	if (strengths.empty()) strengths.resize(size(), {0, 0});
@@ -24,7 +24,7 @@ void ContactStore::put(int p, const Contact& contact)
 Contact ContactStore::get(int p) const
 {
 	const BondStrengths bond = strengths.empty() ? BondStrengths{0, 0} : strengths[p];
-	return {contacts[p].memory, {lawOf(contacts[p].springs, table[kinds[p]]), bond.tension, bond.shear}, bits[p]};
+	return {contacts[p].memory, {law(p), bond.tension, bond.shear}, bits[p]};
 }
 
 } // namespace hexmembrane

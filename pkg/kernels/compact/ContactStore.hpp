@@ -41,6 +41,7 @@ public:
 	/// Memory, bits and strengths of a bond; the other parameters stay those of setSprings(), and what they have no spring for is not kept.
 	void put(int p, const Contact& contact);
 	Contact get(int p) const;
+	LinearLaw<double> law(int p) const { return lawOf(contacts[p].springs, table[kinds[p]]); }
 
 	std::size_t size() const { return contacts.size(); }
 

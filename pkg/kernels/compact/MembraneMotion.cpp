@@ -191,7 +191,8 @@ int MembraneMotion::move(double dt, double damping, double limit, std::vector<Te
 			if (Grip* grip = gripOf[k]) {
 				const double told = grip->velocity[a];
 				for (int i = 0; i < n; ++i) {
-					grip->work.before += 0.5 * (mass * (told - v[i]) * (v[i] + told) - dt * f[i] * v[i]);
+					grip->work.atOnce += 0.5 * mass * (told - v[i]) * (v[i] + told);
+					grip->work.before -= 0.5 * dt * f[i] * v[i];
 					grip->work.after -= 0.5 * dt * f[i] * told;
 					v[i] = told;
 					x[i] += dt * told;

@@ -16,6 +16,7 @@ public:
 	/// that leads on.
 	struct HalfWorks {
 		double before = 0, after = 0;
+		double atOnce = 0; ///< of bringing what is gripped to its speed
 	};
 
 	/// Forces on the rings first .. last, besides contacts.

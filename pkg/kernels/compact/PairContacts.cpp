@@ -24,7 +24,7 @@ bool PairContacts::restore(int i, int j, const Contact& contact)
 	return true;
 }
 
-void PairContacts::rebuild(NearPairs found, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfPair& springs)
+ContactWorks PairContacts::rebuild(NearPairs found, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfPair& springs)
 {
 	PairContacts old;
 	std::swap(old.pairs, pairs);
@@ -40,7 +40,13 @@ void PairContacts::rebuild(NearPairs found, const std::vector<int>& newIndex, co
 			first[p] = int(i);
 			store.setSprings(p, springs(int(i), pairs.other[p]));
 		}
-	old.forEachTouching([&](int i, int j, const Contact& contact) { restore(newIndex[i], newIndex[j], contact); });
+	ContactWorks lost;
+	old.forEachTouching([&](int i, int j, const Contact& contact) {
+		const int p = find(std::min(newIndex[i], newIndex[j]), std::max(newIndex[i], newIndex[j]));
+		if (p >= 0) lost += worksOfLostSprings(contact.memory, contact.law, store.law(p));
+		restore(newIndex[i], newIndex[j], contact);
+	});
+	return lost;
 }
 
 void PairContacts::divide(const ThreadPartition& runs)

@@ -22,7 +22,8 @@ public:
 	/// Takes over a new list. Memories of contacts that touch in the old list go to their pairs in the new one (the others are dropped: a touching pair is
 	/// always in a new list); `springs` makes the parameters of all pairs.
 	/// \param kinds parameters by kind \param newIndex where each sphere of the old numbering stands in the new one
-	void rebuild(NearPairs found, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfPair& springs);
+	/// \return what springs held that are not there any more (J)
+	ContactWorks rebuild(NearPairs found, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfPair& springs);
 
 	/// Where the pairs of each sphere begin, one more entry than spheres.
 	const std::vector<int>& rowStart() const { return pairs.start; }

@@ -182,7 +182,7 @@ void SphereAssembly::buildLists(const std::vector<int>& newIndex)
 	NearPairs general;
 	std::vector<FrictionlessContacts::Pair> frictionless;
 	findPairs(general, frictionless);
-	contacts.rebuild(std::move(general), newIndex, kinds, [this](int i, int j) { return springsOf(i, j); });
+	sums.works += contacts.rebuild(std::move(general), newIndex, kinds, [this](int i, int j) { return springsOf(i, j); });
 	smooth.rebuild(frictionless, grainCount, spheres() - grainCount, [this](int i, int j) { return springsOf(i, j).springs.kn; });
 	runs = {};
 	loadsStale = true;
@@ -191,7 +191,7 @@ void SphereAssembly::buildLists(const std::vector<int>& newIndex)
 		std::vector<int> near;
 		for (int i = 0; i < spheres(); ++i)
 			if (listedShapes[b]->near({listed[i], places[i].radius}, gap)) near.push_back(i);
-		boundaryContacts[b].rebuild(std::move(near), newIndex, kinds, [&](int i) { return springsOf(boundaries[b], i); });
+		sums.works += boundaryContacts[b].rebuild(std::move(near), newIndex, kinds, [&](int i) { return springsOf(boundaries[b], i); });
 	}
 }
 

@@ -277,6 +277,15 @@ inline ContactMemory<double> withoutLostSprings(ContactMemory<double> memory, co
 	return memory;
 }
 
+/// What the springs held that withoutLostSprings() takes away (J), by the law that they had.
+inline ContactWorks worksOfLostSprings(const ContactMemory<double>& memory, const LinearLaw<double>& before, const LinearLaw<double>& now)
+{
+	ContactWorks works;
+	if (!(now.ks > 0)) works.slip = springEnergy(memory.shear.squaredNorm(), before.ks);
+	if (!(now.kr > 0)) works.roll = springEnergy(memory.moment.squaredNorm(), before.kr);
+	return works;
+}
+
 /// How the two bodies of a contact move.
 template <class V>
 struct PairMotion {

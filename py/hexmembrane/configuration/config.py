@@ -108,14 +108,28 @@ class Membrane:
 		"",
 		choices=("tributary", "cube"),
 	)
-	gain: float = key(0.05, "gain of the loop that brings group 2's transmitted pressure to the target, 0: open loop", "", low=0, high=1)
-	pressureGain: float = key(
-		0.2,
-		"the same of the main body, whose own tension presses on the soil too; 0: the pressure asked for is on the membrane",
-		"",
+	servoTime: Optional[float] = key(
+		None,
+		"time constant of the loop that brings group 2's transmitted pressure to the target; none: 4 d sqrt(rho/pressure), d the mean grain "
+		"diameter; .inf: open loop",
+		"s",
 		low=0,
-		high=1,
+		openLow=True,
+		infinite=True,
 	)
+	pressureTime: Optional[float] = key(
+		None,
+		"the same of the main body, whose own tension presses on the soil too; none: 10 d sqrt(rho/pressure); .inf: open loop, the pressure asked "
+		"for is on the membrane",
+		"s",
+		low=0,
+		openLow=True,
+		infinite=True,
+	)
+	REPLACED = {
+		"gain": "membrane.servoTime, a time constant in s; for gain: 0, .inf",
+		"pressureGain": "membrane.pressureTime, a time constant in s; for pressureGain: 0, .inf",
+	}
 
 	@property
 	def centralBonds(self):
@@ -174,7 +188,7 @@ class Consolidation:
 	unbalanced: float = key(1e-3, "limit of the unbalanced force ratio, membrane counted", "", low=0, high=0.1, openLow=True, free=True)
 	tolerance: Optional[float] = key(
 		None,
-		"largest relative distance of transmitted pressure and axial stress from the pressure; none: 0.005, and 0.05 with membrane.pressureGain 0",
+		"largest relative distance of transmitted pressure and axial stress from the pressure; none: 0.005, and 0.05 with an open loop on the membrane",
 		"",
 		low=0,
 		high=0.5,

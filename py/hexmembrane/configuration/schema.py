@@ -25,7 +25,7 @@ class Key:
 	"""What is known of one key.
 
 	``low`` and ``high`` are inclusive unless the matching ``open...`` is set. ``free``: the value may differ when a test is resumed, since it does
-	not change what has been computed.
+	not change what has been computed. ``infinite``: inf (YAML's .inf) is a value.
 	"""
 
 	doc: str
@@ -36,6 +36,7 @@ class Key:
 	openHigh: bool = False
 	choices: tuple = ()
 	free: bool = False
+	infinite: bool = False
 
 	def range(self):
 		"""The allowed values in words, '' when everything of the type is allowed."""
@@ -92,7 +93,7 @@ def _number(path, value, kind, spec):
 		number = float(value)
 	except (TypeError, ValueError):
 		raise ConfigError(path, value, f"is not {wanted}", fix) from None
-	if not math.isfinite(number):
+	if not math.isfinite(number) and not (spec.infinite and number == math.inf):
 		raise ConfigError(path, value, "is not finite", fix)
 	if kind is int:
 		if number != int(number):
@@ -147,6 +148,8 @@ def build(cls, mapping, path=""):
 	fields = {field.name: field for field in dataclasses.fields(cls)}
 	at = f"{path}." if path else ""
 	for name in mapping:
+		if name in getattr(cls, "REPLACED", ()):
+			raise ConfigError(f"{at}{name}", mapping[name], "is no key any more", cls.REPLACED[name])
 		if name not in fields:
 			raise ConfigError(
 				f"{at}{name}", mapping[name], "unknown key", f"{_guess(name, fields)}known keys are {', '.join(fields)}"

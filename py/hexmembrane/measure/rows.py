@@ -73,7 +73,8 @@ def coordination(first, count):
 
 
 def row(scene, grains, reference, stage, elapsed):
-	"""The measured row as a dict; see :data:`hexmembrane.output.records.COLUMNS`."""
+	"""The measured row as a dict, of the last step in either tier; see :data:`hexmembrane.output.records.COLUMNS`."""
+	scene.exportContacts()
 	boundary = scene.lateralBoundary
 	bottom, top = scene.faces()
 	height = top - bottom

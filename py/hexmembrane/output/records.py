@@ -46,7 +46,7 @@ COLUMNS = (
 	Column(
 		"sigma3_applied",
 		"Pa",
-		"pressure on the membrane's main body: sigma3 with membrane.pressureGain 0, else what brings the transmitted pressure to it; of a rigid wall sigma3",
+		"pressure on the membrane's main body: sigma3 with an open loop (membrane.pressureTime .inf), else what brings the transmitted pressure to it; of a rigid wall sigma3",
 	),
 	Column(
 		"sigma3_transmitted_group3",

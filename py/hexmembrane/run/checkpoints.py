@@ -7,7 +7,8 @@ The JSON is written last, by temporary name and rename, so a kill at any moment 
 import json
 import pathlib
 
-VERSION = 1
+#: Raised when states of before cannot be read any more. 2: contacts of the compact tier by the model's own list of fields.
+VERSION = 2
 _NAME = "checkpoint.json"
 
 

@@ -16,6 +16,7 @@ from hexmembrane.output.frames import Frames
 from hexmembrane.output.records import Records
 from hexmembrane.run import checkpoints
 from hexmembrane.run.progress import Progress
+from hexmembrane.scene import timestep
 from hexmembrane.scene.builder import checkTimeStep
 from hexmembrane.scene.handles import Scene
 
@@ -94,7 +95,6 @@ class TriaxialTest:
 
 	def row(self):
 		"""Measure, write and return a row of the records."""
-		self.scene.exportContacts()
 		self.lastRow = rows.row(self.scene, self.grains, self.reference, self.stage, self.elapsed())
 		lost = rows.escaped(self.scene, self.grains)
 		if lost is not None:
@@ -189,7 +189,7 @@ class TriaxialTest:
 
 	def _inertialTime(self):
 		"""d sqrt(rho/sigma3) [s]: a strain rate times this is the inertial number."""
-		return self.grains.meanDiameter * math.sqrt(self.grains.density / self.config.consolidation.pressure)
+		return timestep.inertialTime(self.grains.meanDiameter / 2, self.grains.density, self.config.consolidation.pressure)
 
 	def _rampedChunk(self, rampTime, steps):
 		"""Run ``steps`` steps, the pressure following its smooth rise P (1 - cos(pi t/T))/2, never below _FIRST of P."""
@@ -216,7 +216,7 @@ class TriaxialTest:
 		tolerance = self.config.consolidation.tolerance
 		if tolerance is not None:
 			return tolerance
-		return 0.05 if self.config.boundary == "membrane" and self.config.membrane.pressureGain == 0 else 0.005
+		return 0.05 if self.config.boundary == "membrane" and self.config.membrane.pressureTime == math.inf else 0.005
 
 	def _atRest(self, rampTime):
 		keys = self.config.consolidation

@@ -75,12 +75,11 @@ def setTier(config):
 	loop = compactLoop()
 	if (loop is not None) == (config.tier == "compact"):
 		return
-	names = ("MembraneBonds", "MembranePressure", "MembraneRadialServo", "MembraneORings", "RadialWallServo", "PlatenDrive")
 	if loop:
 		loop.substeps = 1
 		O.step()
 		loop.exportContacts()
-	inner = list(loop.engines) if loop else [engine for engine in O.engines if type(engine).__name__ in names]
+	inner = list(loop.engines) if loop else [engine for engine in O.engines if yade.CompactLoop.canStep(engine)]
 	radii = [body.shape.radius for body in O.bodies if isinstance(body.shape, yade.Sphere)]
 	O.engines = _engines(config, inner, min(radii))
 

@@ -94,11 +94,15 @@ class FlexibleMembrane(LateralBoundary):
 		scaling = timestep.densityScaling(keys.densityScaling, timestep.grainStep(config.specimen, smallest), unscaled)
 		scaleDensity(membrane, scaling)
 
+		inertial = timestep.inertialTime(packing.radii, config.specimen.density, config.consolidation.pressure)
+		servoTime = keys.servoTime or 4 * inertial
+		pressureTime = keys.pressureTime or 10 * inertial
+
 		def engines(bottom, top):
 			before = [
 				bonds,
-				yade.MembranePressure(membrane=membrane, pressure=0.0, surface=keys.surface, gain=keys.pressureGain),
-				yade.MembraneRadialServo(membrane=membrane, pressure=0.0, areaRule=keys.areaRule, gain=keys.gain),
+				yade.MembranePressure(membrane=membrane, pressure=0.0, surface=keys.surface, timeConstant=pressureTime),
+				yade.MembraneRadialServo(membrane=membrane, pressure=0.0, areaRule=keys.areaRule, timeConstant=servoTime),
 			]
 			return before, [yade.MembraneORings(membrane=membrane, mode=keys.oRings, bottomPlaten=bottom, topPlaten=top)]
 

@@ -29,6 +29,15 @@ def stiffnessLevel(emod, pressure):
 	return math.pi * emod / (4 * pressure)
 
 
+def inertialTime(radii, density, pressure):
+	"""d sqrt(rho/p) [s], d the mean grain diameter by volume: a strain rate times this is the inertial number.
+
+	:param radii: of the grains, or one radius [m].
+	"""
+	diameter = 2 * float((numpy.asarray(radii) ** 3).mean()) ** (1 / 3)
+	return diameter * math.sqrt(density / pressure)
+
+
 def grainStep(specimen, smallest):
 	"""Critical step [s] of the grains before there are contacts: CONTACTS equal neighbours stand all round a smallest grain.
 
