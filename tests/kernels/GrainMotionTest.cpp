@@ -22,7 +22,8 @@ struct Grains {
 
 	explicit Grains(unsigned seed, double damping = 0.3, double dt = 0.1)
 	{
-		const auto x = support::randomVectors(count, 1, seed), v = support::randomVectors(count, 1, seed + 1), w = support::randomVectors(count, 1, seed + 2);
+		const auto x = support::randomVectors(count, 1, seed), v = support::randomVectors(count, 1, seed + 1),
+		           w = support::randomVectors(count, 1, seed + 2);
 		const auto f = support::randomVectors(count, 5, seed + 3), t = support::randomVectors(count, 5, seed + 4);
 		turned = support::randomVectors(count, 1, seed + 5);
 		for (int i = 0; i < count; ++i) {
@@ -33,7 +34,23 @@ struct Grains {
 			inertia.push_back(2 - 0.1 * i);
 			fixed.push_back(i % 5 == 4);
 		}
-		step = {places.data(), motions.data(), loads.data(), mass.data(), inertia.data(), fixed.data(), turned.data(), 0, count, dt, damping, 1e6, true, 0, 0, 0, 0};
+		step = {places.data(),
+		        motions.data(),
+		        loads.data(),
+		        mass.data(),
+		        inertia.data(),
+		        fixed.data(),
+		        turned.data(),
+		        0,
+		        count,
+		        dt,
+		        damping,
+		        1e6,
+		        true,
+		        0,
+		        0,
+		        0,
+		        0};
 	}
 };
 
@@ -42,8 +59,10 @@ struct Grains {
 double after(double velocity, double load, double inertia, double dt, double damping)
 {
 	const double halfway = velocity + 0.5 * dt * load / inertia;
-	if (load * halfway > 0) load -= damping * load;
-	else if (load * halfway < 0) load += damping * load;
+	if (load * halfway > 0)
+		load -= damping * load;
+	else if (load * halfway < 0)
+		load += damping * load;
 	return velocity + dt * load / inertia;
 }
 
@@ -97,7 +116,8 @@ TEST(GrainMotion, dampingIsBookedToFirstOrder)
 			kinetic += 0.5 * grains.mass[i] * old.velocity.squaredNorm() + 0.5 * grains.inertia[i] * old.spin.squaredNorm();
 			gain += 0.5 * grains.mass[i] * (now.velocity.squaredNorm() - old.velocity.squaredNorm());
 			gain += 0.5 * grains.inertia[i] * (now.spin.squaredNorm() - old.spin.squaredNorm());
-			work += dt * before.loads[i].force.dot(0.5 * (old.velocity + now.velocity)) + dt * before.loads[i].torque.dot(0.5 * (old.spin + now.spin));
+			work += dt * before.loads[i].force.dot(0.5 * (old.velocity + now.velocity)) +
+			        dt * before.loads[i].torque.dot(0.5 * (old.spin + now.spin));
 		}
 		EXPECT_NEAR(grains.step.kinetic / kinetic, 1, 1e-14) << "by the velocities before the step";
 		EXPECT_NEAR((work - gain) / grains.step.dampedWork, 1, 20 * dt);

@@ -8,7 +8,10 @@ using namespace hexmembrane;
 namespace {
 
 /// Four vectors as lanes, and one of the four back.
-Lanes3 four(const std::vector<Vec3>& v) { return {Lanes{v[0][0], v[1][0], v[2][0], v[3][0]}, Lanes{v[0][1], v[1][1], v[2][1], v[3][1]}, Lanes{v[0][2], v[1][2], v[2][2], v[3][2]}}; }
+Lanes3 four(const std::vector<Vec3>& v)
+{
+	return {Lanes{v[0][0], v[1][0], v[2][0], v[3][0]}, Lanes{v[0][1], v[1][1], v[2][1], v[3][1]}, Lanes{v[0][2], v[1][2], v[2][2], v[3][2]}};
+}
 
 Vec3 one(const Lanes3& v, int k) { return {v.x[k], v.y[k], v.z[k]}; }
 

@@ -39,32 +39,6 @@ double meanOf(const std::vector<double>& v) { return std::accumulate(v.begin(), 
 
 } // namespace
 
-TEST(Random, isSplitMix64)
-{
-	// first outputs of the published reference implementation for seed 1234567
-	Random random(1234567);
-	EXPECT_EQ(random.bits(), 6457827717110365317u);
-	EXPECT_EQ(random.bits(), 3203168211198807973u);
-	EXPECT_EQ(random.bits(), 9817491932198370423u);
-}
-
-TEST(Random, uniformStaysInItsRangeWithTheRightMean)
-{
-	Random random(5);
-	double sum = 0, least = 1, most = 0;
-	for (int i = 0; i < 100000; ++i) {
-		const double u = random.uniform();
-		sum += u;
-		least = std::min(least, u);
-		most = std::max(most, u);
-	}
-	EXPECT_GE(least, 0);
-	EXPECT_LT(most, 1);
-	EXPECT_GT(most, 0.9999);
-	EXPECT_LT(least, 0.0001);
-	EXPECT_NEAR(sum / 100000, 0.5, 5 * 0.2887 / std::sqrt(100000.)); // five standard errors
-}
-
 TEST(SpherePacking, meetsThePorosityWithoutOverlaps)
 {
 	for (const double porosity : {0.60, 0.50, 0.43}) {

@@ -15,8 +15,7 @@ std::vector<int> rowStarts(int grains, int particles, bool particlesHavePairs, u
 {
 	Random random(seed);
 	std::vector<int> start{0};
-	for (int i = 0; i < grains + particles; ++i)
-		start.push_back(start.back() + (i < grains || particlesHavePairs ? int(random.uniform(0, 9)) : 0));
+	for (int i = 0; i < grains + particles; ++i) start.push_back(start.back() + (i < grains || particlesHavePairs ? int(random.uniform(0, 9)) : 0));
 	return start;
 }
 
@@ -39,9 +38,10 @@ TEST(ThreadPartition, everySphereHasOneOwner)
 							for (int i = from; i < to; ++i) ++owners[i];
 						});
 						for (int i = parts.rowsOf(t).from; i < parts.rowsOf(t).to; ++i) ++swept[i];
-						if (t > 0) EXPECT_EQ(parts.rowsOf(t).from, parts.rowsOf(t - 1).to) << "upwards";
+						EXPECT_EQ(parts.rowsOf(t).from, t > 0 ? parts.rowsOf(t - 1).to : 0) << "upwards";
 					}
-					EXPECT_EQ(std::count(owners.begin(), owners.end(), 1), grains + particles) << grains << " " << particles << " " << threads;
+					EXPECT_EQ(std::count(owners.begin(), owners.end(), 1), grains + particles)
+					        << grains << " " << particles << " " << threads;
 					// whoever has pairs is in somebody's rows
 					for (int i = 0; i < grains + particles; ++i) EXPECT_TRUE(swept[i] == 1 || start[i] == start[i + 1]) << i;
 				}
