@@ -33,10 +33,11 @@ private:
 /*! An instant as the engines see it: the arrays, and what engines have asked for in this step. */
 class CompactLoop::View : public StepView {
 public:
-	explicit View(CompactLoop& l) : loop(l), state(*l.state) {}
+	View(CompactLoop& l, bool lastStep) : loop(l), state(*l.state), last(lastStep) {}
 
 	const hexmembrane::PaddedRings& positions(const HexMembrane&) override { return *state.sheet.position; }
 	void refresh(const Sheet&) override {} // the rows are where the particles are moved
+	bool leavesInstant() const override { return last; }
 	void addForces(const HexMembrane&, const vector<RingRange>& rings, const hexmembrane::PaddedRings& force, const hexmembrane::PaddedRings* torque,
 	               WorkMeter* meter) override
 	{
@@ -58,7 +59,7 @@ public:
 	{
 		const int b = require(boundary);
 		const hexmembrane::BoundaryLoad& load = state.spheres.onBoundary[b];
-		return {load.load.force, load.normalForce, load.normalStiffness, load.count, ""};
+		return {load.load.force + loop.outsideOn[b], load.normalForce, load.normalStiffness, load.count, ""};
 	}
 	Real stiffness(Body::id_t boundary, const Vector3r& along) override { return state.spheres.boundaryContacts[require(boundary)].stiffness(along); }
 
@@ -72,6 +73,7 @@ private:
 
 	CompactLoop& loop;
 	CompactState& state;
+	const bool last; //!< of the iteration
 };
 
 // Labels are names in Python, as YADE makes them of the labels in O.engines; also of engines that have just been loaded.
@@ -109,7 +111,7 @@ void CompactLoop::prepareEngines()
 	if (exportPeriod < 0) hexmembrane::reject("CompactLoop.exportPeriod", exportPeriod, "must not be negative", "0 for never, or a number of iterations");
 	if (!math::isnan(skin)) hexmembrane::requirePositive("CompactLoop.skin", skin, "m");
 	hexmembrane::requirePositive("O.dt", scene->dt, "s");
-	requireCompactScene(*scene, engines);
+	requireCompactScene(*scene, *this, engines);
 	warnReaders();
 	stepped.clear();
 	std::set<string> classes;
@@ -192,7 +194,7 @@ void CompactLoop::step(bool last)
 	grips.clear();
 	gripMeters.clear();
 	torques.clear();
-	View view(*this);
+	View view(*this, last);
 	for (Stepped* one : stepped) one->step(view);
 	const bool energies = scene->trackEnergy && last;
 	Real elastic = 0;

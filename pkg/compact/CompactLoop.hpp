@@ -69,6 +69,7 @@ private:
 	vector<WorkMeter*> gripMeters;
 	vector<const hexmembrane::PaddedRings*> torques;
 	vector<std::shared_ptr<const hexmembrane::BoundaryShape>> stepShapes; //!< of the boundaries when the last step's forces were computed
+	vector<Vector3r> outsideOn;                                           //!< forces on the boundaries that are held for the iteration (N)
 	int threads = 1;
 	Real lastDt = 0;
 	bool warned = false;

@@ -59,6 +59,8 @@ void CompactLoop::takeOutsideForces()
 	scene->forces.sync();
 	hexmembrane::SphereAssembly& spheres = state->spheres;
 	spheres.outside.clear();
+	outsideOn.clear();
+	for (Body::id_t id : state->boundaryIds) outsideOn.push_back(scene->forces.getForce(id));
 	const int count = spheres.spheres();
 	const auto load = [&](int i) { return hexmembrane::Load{scene->forces.getForce(spheres.id[i]), scene->forces.getTorque(spheres.id[i])}; };
 	bool any = false;

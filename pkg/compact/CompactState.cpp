@@ -90,6 +90,9 @@ CompactState::CompactState(const Scene& scene, const Sheet& given) : sheet(given
 	int common = -1;
 	for (const auto& b : *scene.bodies) {
 		if (!b) continue;
+		if ((common & b->groupMask) == 0)
+			refuseBody(b->getId(), "has a mask with no bit in common with all before it, so some pairs would not meet",
+			           "give all bodies one common bit (the membrane a second one), or use the reference tier");
 		common &= b->groupMask;
 		if (ofSheet.count(b->getId())) continue;
 		if (b->isClump()) refuseBody(b->getId(), "is a clump or of one", "use single spheres, or the reference tier");
@@ -102,10 +105,6 @@ CompactState::CompactState(const Scene& scene, const Sheet& given) : sheet(given
 			           "only Sphere and the boundaries Platen and CylinderWall are known here; use the reference tier");
 		marks[b->getId()] = BodyMark(*b);
 	}
-	if (common == 0)
-		throw std::runtime_error(
-		        "CompactLoop: the masks of the bodies have no bit in common, so some pairs would not meet; fix: give all bodies one common "
-		        "bit (the membrane a second one), or use the reference tier");
 	const int grainCount = static_cast<int>(rows.size());
 	if (sheet.ids) collectSheet(scene, rows);
 	if (rows.empty()) throw std::runtime_error("CompactLoop: there are no spheres in the scene; fix: add some first");

@@ -20,7 +20,8 @@ const vector<ReadingRow>& readingContract()
 	        {"Scene", "forces, torques, permanent forces", "read",
 	         "what stands there when the loop begins is held for the iteration; so gravity acts by GravityEngine"},
 	        {"Scene", "interactions", "read", "real contacts of LinearPhys are taken over with their history and cleared; other contacts are refused"},
-	        {"Scene", "engines", "refused", "a collider, InteractionLoop or NewtonIntegrator beside the loop; an engine that is in both lists"},
+	        {"Scene", "engines", "refused",
+	         "a collider, InteractionLoop, NewtonIntegrator or second CompactLoop beside the loop; an engine that is in both lists"},
 	        {"Body", "number of bodies", "watched", "bodies may come and go; a membrane's must stay"},
 	        {"Body", "material", "watched", "must be a LinearMat"},
 	        {"Body", "shape", "watched", "Sphere, or a boundary that is registered (Platen, CylinderWall)"},
@@ -28,7 +29,8 @@ const vector<ReadingRow>& readingContract()
 	        {"Body", "clumpId", "refused", "no clumps"},
 	        {"Body", "bounded", "refused", "a body that no collider sees"},
 	        {"Body", "aspherical", "refused", "no aspherical bodies"},
-	        {"State", "pos, vel, angVel", "read", "of spheres and boundaries"},
+	        {"State", "pos, vel, angVel", "read",
+	         "of spheres and boundaries; the works of engines count the way that a step of the present velocities makes"},
 	        {"State", "ori", "read", "of boundaries; that of grains is advanced by their rotation, that of membrane particles is not kept"},
 	        {"State", "mass", "watched", "positive for what moves; one for all particles of a membrane"},
 	        {"State", "inertia", "watched", "positive and a sphere's for what turns"},
@@ -73,13 +75,13 @@ bool BodyMark::holds(const Body& body) const
 	       state.isDamped == damped;
 }
 
-void requireCompactScene(const Scene& scene, const vector<shared_ptr<Engine>>& stepped)
+void requireCompactScene(const Scene& scene, const Engine& self, const vector<shared_ptr<Engine>>& stepped)
 {
 	if (scene.isPeriodic) throw std::runtime_error("CompactLoop: the scene is periodic; fix: use the reference tier");
 	for (const auto& engine : scene.engines) {
-		if (engine->dead) continue;
-		if (dynamic_cast<const NewtonIntegrator*>(engine.get()) || dynamic_cast<const Collider*>(engine.get()) ||
-		    dynamic_cast<const InteractionLoop*>(engine.get()))
+		if (engine->dead || engine.get() == &self) continue;
+		if (dynamic_cast<const ContactKeeper*>(engine.get()) || dynamic_cast<const NewtonIntegrator*>(engine.get()) ||
+		    dynamic_cast<const Collider*>(engine.get()) || dynamic_cast<const InteractionLoop*>(engine.get()))
 			throw std::runtime_error("CompactLoop: there is a " + engine->getClassName() +
 			                         " beside it in O.engines, both would act; fix: remove it");
 		if (dynamic_cast<const Stepped*>(engine.get()))

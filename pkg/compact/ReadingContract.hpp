@@ -31,8 +31,8 @@ struct BodyMark {
 	bool holds(const Body& body) const;
 };
 
-//! Refuses a scene, or engines beside CompactLoop, that it cannot do.
-void requireCompactScene(const Scene& scene, const vector<shared_ptr<Engine>>& stepped);
+//! Refuses a scene, or engines beside the compact loop `self`, that it cannot do.
+void requireCompactScene(const Scene& scene, const Engine& self, const vector<shared_ptr<Engine>>& stepped);
 
 [[noreturn]] void refuseBody(Body::id_t id, const string& wrong, const string& fix);
 

@@ -48,6 +48,8 @@ public:
 	virtual const hexmembrane::PaddedRings& positions(const HexMembrane& membrane) = 0;
 	//! Brings the rows of a sheet up to the present positions, velocities and spins.
 	virtual void refresh(const Sheet& sheet) = 0;
+	//! Whether rows move on in this step, and the present instant is one that somebody may ask for.
+	virtual bool leavesInstant() const { return false; }
 	//! Adds forces to rings, and torques where given; they stay where they are until the step ends. `meter`: books their work; none: nobody wants it.
 	virtual void addForces(const HexMembrane& membrane, const vector<RingRange>& rings, const hexmembrane::PaddedRings& force,
 	                       const hexmembrane::PaddedRings* torque, WorkMeter* meter) = 0;

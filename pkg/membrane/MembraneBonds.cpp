@@ -94,6 +94,7 @@ void MembraneBonds::step(StepView& view)
 {
 	view.refresh(sheet());
 	kernel->compute(state(), scene->dt);
+	stepped = view.leavesInstant() ? kernel->position : hexmembrane::PaddedRings();
 	view.addForces(*membrane, {{0, membrane->rings - 1}}, kernel->force, built.ks > 0 ? &kernel->torque : nullptr, nullptr);
 }
 
@@ -104,6 +105,27 @@ void MembraneBonds::bookStored()
 	if (scene->trackEnergy) scene->energy->add(elasticEnergy(), "elastMembrane", energyIndex, /*reset*/ true);
 }
 
+namespace {
+
+// While it lives the bonds' kernel has the positions that the last step's forces belong to: in the compact tier the particles have moved on since.
+class AtLastStep {
+public:
+	AtLastStep(hexmembrane::PaddedRings& present, hexmembrane::PaddedRings& stepped) : now(present), then(stepped), moved(stepped.rows() > 0) { swap(); }
+	~AtLastStep() { swap(); }
+	AtLastStep(const AtLastStep&) = delete;
+	AtLastStep& operator=(const AtLastStep&) = delete;
+
+private:
+	void swap()
+	{
+		if (moved) std::swap(now, then);
+	}
+	hexmembrane::PaddedRings &now, &then;
+	const bool moved;
+};
+
+} // namespace
+
 void MembraneBonds::requireStepped(const char* what) const
 {
 	if (!kernel) throw std::runtime_error(string("MembraneBonds.") + what + ": nothing computed yet; fix: run a step first");
@@ -112,12 +134,14 @@ void MembraneBonds::requireStepped(const char* what) const
 Real MembraneBonds::elasticEnergy()
 {
 	requireStepped("elasticEnergy");
+	const AtLastStep then(kernel->position, stepped);
 	return kernel->energy(state());
 }
 
 vector<Real> MembraneBonds::normalForces()
 {
 	requireStepped("normalForces");
+	const AtLastStep then(kernel->position, stepped);
 	vector<Real> forces(membrane->stencil().bondCount());
 	for (size_t b = 0; b < forces.size(); ++b) forces[b] = kernel->normalForce(state(), static_cast<int>(b));
 	return forces;
@@ -135,6 +159,7 @@ Real MembraneBonds::axialTension(Real z)
 {
 	requireStepped("axialTension");
 	hexmembrane::requireFinite("MembraneBonds.axialTension: z", z, "m");
+	const AtLastStep then(kernel->position, stepped);
 	const auto onFirst = hexmembrane::bondForces(*kernel, state());
 	return hexmembrane::axialTension(membrane->stencil(), steppedPositions(), onFirst, z);
 }
@@ -142,6 +167,7 @@ Real MembraneBonds::axialTension(Real z)
 Real MembraneBonds::radialShare(int group)
 {
 	requireStepped("radialShare");
+	const AtLastStep then(kernel->position, stepped);
 	vector<Vector3r> forces;
 	for (int k = 0; k < membrane->rings; ++k)
 		for (int i = 0; i < membrane->perRing; ++i) forces.push_back(kernel->force.get(k, i));

@@ -44,6 +44,7 @@ private:
 
 	// Caches: rebuilt from the attributes when they are missing or other than when they were built.
 	std::unique_ptr<hexmembrane::BondForce> kernel;
+	hexmembrane::PaddedRings stepped; //!< compact tier: positions that the last step's forces belong to
 	hexmembrane::BondLaw built;
 	const HexMembrane* builtFor = nullptr;
 	vector<Real> restLength;

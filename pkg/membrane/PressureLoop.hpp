@@ -40,8 +40,8 @@ struct PressureLoop {
 		const Real elapsed = scene.time - lastTime;
 		if (elapsed >= 0 && elapsed < timeConstant / corrections * (1 - 1e-9)) return;
 		lastTime = scene.time;
-		if (!(elapsed >= 0)) return; // the first step, or the clock was set back
 		transmitted = measure();
+		if (!(elapsed >= 0)) return; // the first step, or the clock was set back: it counts from here
 		factor = hexmembrane::correctedFactor(factor, elapsed / timeConstant, target, transmitted, low, high, saturated);
 	}
 };

@@ -3,6 +3,6 @@
 
 import sys
 
-from hexmembrane.run import main
+from hexmembrane.run.command import main
 
 sys.exit(main(sys.argv[1:]))

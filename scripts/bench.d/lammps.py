@@ -28,7 +28,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))  # YADE runs s
 from study import HEIGHT, RADIUS, packing  # noqa: E402
 from table import write  # noqa: E402
 
-from hexmembrane.platens import platen  # noqa: E402
+from hexmembrane.scene.platens import platen  # noqa: E402
 
 WARM, STEPS, TURNS = 200, 2000, 5
 SWELL = 1.002  # of the packing's radii

@@ -11,7 +11,7 @@ import yade
 from study import HEIGHT, RADIUS
 from yade import O, utils
 
-from hexmembrane.platens import platen
+from hexmembrane.scene.platens import platen
 
 PRESSURE, EMOD = 5e4, 6e7
 SUBSTEPS = 100

@@ -3,9 +3,9 @@
 
 import os
 
-from hexmembrane import packing_file
-from hexmembrane.config import load
-from hexmembrane.specimen import make
+from hexmembrane.scene import packing_file
+from hexmembrane.configuration import load
+from hexmembrane.scene.specimen import make
 
 RADIUS, HEIGHT = 0.02, 0.08  # of the cylinder, m
 STUDY = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "examples", "paper", "flexible-100.yaml")

@@ -13,7 +13,7 @@ from yade import O
 SCENES = {
 	"membrane": dict(),
 	"membrane with shear": dict(poisson=0.2),
-	"rough membrane": dict(membraneFriction=0.3, poisson=0.2, gain=0.05, pressureGain=0.05),
+	"rough membrane": dict(membraneFriction=0.3, poisson=0.2, servoTime=4e-4, pressureTime=4e-4),
 	"wall": dict(lateral="wall"),
 }
 HALF = 150

@@ -7,7 +7,7 @@ import hexmembrane  # noqa: F401
 import numpy as np
 import tiers
 import yade
-from hexmembrane.platens import platen
+from hexmembrane.scene.platens import platen
 from yade import LinearMat, O, utils
 
 EMOD, KRATIO, FRICTION, ROLLING, DENSITY = 1e8, 3.0, 0.4, 0.5, 2650.0

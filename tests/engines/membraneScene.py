@@ -56,9 +56,14 @@ def core(membrane, groups, depth):
 			O.bodies.append(utils.sphere(x + depth * inward(x), membrane.sphereRadius, fixed=True))
 
 
+def coreStep(membrane):
+	"""A stable step of :func:`pressOnCore`."""
+	return 0.2 * (O.bodies[membrane.ids[200]].state.mass / KN) ** 0.5
+
+
 def pressOnCore(tier, membrane, group, *inner, steps=3000):
 	"""Run a membrane (mask 3) whose particles of a group stand against fixed spheres, radially inside, with engines that press and hold it."""
 	core(membrane, [group], 2 * membrane.sphereRadius)
 	O.engines = tiers.engines(tier, inner, damping=0.5, substeps=100)
-	O.dt = 0.2 * (O.bodies[membrane.ids[200]].state.mass / KN) ** 0.5
+	O.dt = coreStep(membrane)
 	tiers.run(steps)

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import yade
-from hexmembrane.platens import platen
+from hexmembrane.scene.platens import platen
 from tiers import engines
 from yade import O, utils
 
@@ -27,17 +27,17 @@ def build(
 	damping=0.2,
 	seed=1,
 	spin=0.0,
-	gain=0.0,
+	servoTime=math.inf,
 	particleRadius=2e-3,
 	porosity=0.45,
 	springs=False,
-	pressureGain=0.0,
+	pressureTime=math.inf,
 ):
 	"""Fill YADE's empty scene; returns a dict of the inner engines by name.
 
 	:param tier: 'reference' or 'compact'. :param lateral: 'membrane' or 'wall'. :param swell: growth of the touching packing's grains, for overlaps.
 	:param spin: random velocities and spins of this size, for motion in every direction.
-	:param gain: of the servo beside the platens. :param pressureGain: of the pressure on the main body.
+	:param servoTime: time constant of the servo beside the platens [s]. :param pressureTime: of the pressure on the main body [s].
 	:param springs: stiffness of the grains' material as kn and ks, else as emod and kratio.
 	"""
 
@@ -64,8 +64,8 @@ def build(
 		)
 		m.generate()
 		made["bonds"] = yade.MembraneBonds(membrane=m, young=2e6, thickness=5e-4, poisson=poisson)
-		made["pressure"] = yade.MembranePressure(membrane=m, pressure=pressure, gain=pressureGain, iterPeriod=10)
-		made["servo"] = yade.MembraneRadialServo(membrane=m, pressure=pressure, gain=gain, iterPeriod=10)
+		made["pressure"] = yade.MembranePressure(membrane=m, pressure=pressure, timeConstant=pressureTime)
+		made["servo"] = yade.MembraneRadialServo(membrane=m, pressure=pressure, timeConstant=servoTime)
 	else:
 		wall = yade.Body()
 		wall.shape = yade.CylinderWall(radius=RADIUS, height=2 * HEIGHT)

@@ -278,7 +278,7 @@ ROWS = {
 		for name, scene, path, value, effect in (
 			("pressure", "membrane", "pressure", scaled(2), True),
 			("pressure", "membrane", "surface", "centre", True),
-			("pressure", "smooth", "gain", 0.1, True),
+			("pressure", "smooth", "timeConstant", 4e-4, True),
 			("pressure", "membrane", "dead", True, True),
 			("servo", "membrane", "pressure", scaled(2), True),
 			("servo", "membrane", "areaRule", "cube", True),

@@ -7,7 +7,7 @@ import pytest
 import yade
 from yade import Vector3, utils
 
-from hexmembrane import packing_file
+from hexmembrane.scene import packing_file
 
 RADIUS, HEIGHT, ORIGIN = 0.02, 0.04, Vector3(0.1, -0.2, 0.3)
 RADII = [1e-3 * (1 + 0.6 * (i % 7) / 6) for i in range(300)]

@@ -30,7 +30,7 @@ if VIEW_FIRST:
 	renderer.render()  # YADE's import of yade.qt makes the tables of functors, as this does
 	assert not hasattr(yade, "Platen")
 import hexmembrane
-from hexmembrane.platens import platen
+from hexmembrane.scene.platens import platen
 
 O.materials.append(yade.LinearMat(density=2600, friction=0.4, kn=1e4, ks=1e4, label="grain"))
 O.bodies.append(utils.sphere((0, 0, 0.0029), 0.003, material="grain"))

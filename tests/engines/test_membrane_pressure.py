@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from contactScene import sphere
-from membraneScene import KN, forcesOn, inward, makeMembrane, positions, pressOnCore, shake, slack
+from membraneScene import KN, coreStep, forcesOn, makeMembrane, pressOnCore, inward, positions, shake, slack
 from tiers import contact, engines, find, owed, run, state
 from yade import ForceResetter, MembraneBonds, MembranePressure, MembraneRadialServo, NewtonIntegrator, Vector3, utils
 
@@ -112,7 +112,7 @@ def test_saveAndLoadContinueExactly(O, tier, tmp_path):
 
 def pressedOnCore(tier):
 	m = makeMembrane()
-	pressure = MembranePressure(membrane=m, pressure=P, surface="centre", gain=0.1, iterPeriod=20)
+	pressure = MembranePressure(membrane=m, pressure=P, surface="centre", timeConstant=200 * coreStep(m))
 	pressOnCore(tier, m, 3, MembraneBonds(membrane=m, kn=1e4), pressure)
 	return m, pressure
 
@@ -152,7 +152,7 @@ def test_theLoopsMeasureIsOfNormalForces(O, tier, loop, case, request):
 	x, u = O.bodies[particle].state.pos, 1e-6
 	normal = (inward(x) - Vector3(0, 0, 1)).normalized()
 	grain = O.bodies[sphere(x + normal * (m.sphereRadius + 0.001 - u), 0.001, fixed=True)]
-	engine = loop(membrane=m, pressure=P, gain=0.1, iterPeriod=1)
+	engine = loop(membrane=m, pressure=P, timeConstant=1e-8)
 	O.engines = engines(tier, [slack(m), engine])
 	O.dt = 1e-9
 	if case == "sliding":  # shear of half the normal force in one step
@@ -170,7 +170,7 @@ def test_theLoopsMeasureIsOfNormalForces(O, tier, loop, case, request):
 def test_closedLoopStopsAtItsLimit(O, tier):
 	"""Nothing inside to press on: the factor stays within its limits and says so."""
 	m = makeMembrane()
-	pressure = MembranePressure(membrane=m, pressure=P, gain=0.5, iterPeriod=1, maxFactor=1.25)
+	pressure = MembranePressure(membrane=m, pressure=P, timeConstant=2e-9, maxFactor=1.25)
 	O.engines = engines(tier, [slack(m), pressure])
 	O.dt = 1e-9
 	O.step()
@@ -188,10 +188,10 @@ BAD = [
 	(lambda m: MembranePressure(ids=[0, 1, 2], triangles=[(0, 1, 3)], pressure=1.0, surface="centre"), ValueError, "MembranePressure.triangles[0] = 3"),
 	(lambda m: MembranePressure(membrane=m, pressure=1.0, surfaceOffset=-1), ValueError, "MembranePressure.surfaceOffset = -1"),
 	(lambda m: MembranePressure(ids=[0, 1, 2], triangles=[(0, 1, 2)], pressure=1.0, surfaceOffset=-2), ValueError, "MembranePressure.surfaceOffset = -2"),
-	(lambda m: MembranePressure(membrane=m, pressure=1.0, gain=-0.1), ValueError, "MembranePressure.gain = -0.1"),
-	(lambda m: MembranePressure(membrane=m, pressure=1.0, gain=0.1, iterPeriod=0), ValueError, "MembranePressure.iterPeriod = 0"),
-	(lambda m: MembranePressure(membrane=m, pressure=1.0, gain=0.1, maxFactor=1.0), ValueError, "MembranePressure.maxFactor = 1"),
-	(lambda m: MembranePressure(ids=[0, 1, 2], triangles=[(0, 1, 2)], pressure=1.0, surface="centre", gain=0.1), ValueError, "MembranePressure.gain = 0.1"),
+	(lambda m: MembranePressure(membrane=m, pressure=1.0, timeConstant=-0.1), ValueError, "MembranePressure.timeConstant = -0.1"),
+	(lambda m: MembranePressure(membrane=m, pressure=1.0, timeConstant=1e-12), ValueError, "MembranePressure.timeConstant = 1e-12: is shorter than two"),
+	(lambda m: MembranePressure(membrane=m, pressure=1.0, timeConstant=1.0, maxFactor=1.0), ValueError, "MembranePressure.maxFactor = 1"),
+	(lambda m: MembranePressure(ids=[0, 1, 2], triangles=[(0, 1, 2)], pressure=1.0, surface="centre", timeConstant=0.1), ValueError, "MembranePressure.timeConstant = 0.1"),
 	(lambda m: MembranePressure(ids=[0, 1, 99999], triangles=[(0, 1, 2)], pressure=1.0, surface="centre"), RuntimeError, "body 99999"),
 ]
 

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from membraneScene import forcesOn, makeMembrane, positions, pressOnCore, slack
+from membraneScene import coreStep, forcesOn, makeMembrane, pressOnCore, positions, slack
 from tiers import engines, find, owed, run, state
 from yade import MembraneBonds, MembraneRadialServo
 
@@ -50,7 +50,7 @@ def test_towardTheAxisOfTheRingWhereItIsNow(O, tier):
 
 def pressedOnCore(tier):
 	m = makeMembrane()
-	servo = MembraneRadialServo(membrane=m, pressure=P, areaRule="cube", gain=0.1, iterPeriod=20)
+	servo = MembraneRadialServo(membrane=m, pressure=P, areaRule="cube", timeConstant=200 * coreStep(m))
 	pressOnCore(tier, m, 2, slack(m), servo)
 	return m, servo
 
@@ -88,8 +88,8 @@ def test_saveAndLoadContinueExactly(O, tier, tmp_path):
 BAD = [
 	(dict(pressure=float("nan")), ValueError, "MembraneRadialServo.pressure"),
 	(dict(areaRule="square"), ValueError, "'tributary' or 'cube'"),
-	(dict(gain=-1.0), ValueError, "MembraneRadialServo.gain"),
-	(dict(gain=0.1, iterPeriod=0), ValueError, "MembraneRadialServo.iterPeriod"),
+	(dict(timeConstant=-1.0), ValueError, "MembraneRadialServo.timeConstant = -1"),
+	(dict(timeConstant=1e-12), ValueError, "MembraneRadialServo.timeConstant = 1e-12: is shorter than two"),
 	(dict(membrane=None), RuntimeError, "MembraneRadialServo.membrane = None"),
 ]
 

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 import yade
-from hexmembrane import correction
+from hexmembrane.scene.membrane_loads import endHeights, membraneLoads
 from membraneScene import HEIGHT, core, forcesOn, makeMembrane, positions, shake
 from tiers import engines, owed, run
 from yade import MembraneBonds, MembraneORings, MembranePressure, MembraneRadialServo, O
@@ -89,13 +89,13 @@ def test_termsOfACylinderPulledLengthwise(O, tier):
 	O.engines = engines(tier, [bonds, pressing])
 	O.dt = 1e-12  # nothing moves
 	O.step()
-	found = correction.terms(m, bonds, pressing, 0, HEIGHT)
-	assert abs(found["pressure_axial"]) < 1e-3 * P * math.pi * m.innerRadius**2  # a straight tube has no axial push
+	loads = membraneLoads(m, bonds, pressing, 0, HEIGHT)
+	assert abs(loads.axialPush) < 1e-3 * P * math.pi * m.innerRadius**2  # a straight tube has no axial push
 	along = 2 / math.sqrt(3) * kn / (1 - 1 / 9) * strain
-	assert found["membrane_axial_mid"] == pytest.approx(2 * math.pi * m.centreRadius * along, rel=2e-3)
-	assert found["membrane_axial_end"] == pytest.approx(found["membrane_axial_mid"], rel=1e-9)
-	assert found["sigma3_membrane"] == pytest.approx(along / 3 / m.innerRadius, rel=5e-3)
-	low, high = correction.endHeights(m)
+	assert loads.axialPullMiddle == pytest.approx(2 * math.pi * m.centreRadius * along, rel=2e-3)
+	assert loads.axialPullEnd == pytest.approx(loads.axialPullMiddle, rel=1e-9)
+	assert loads.radialPressure == pytest.approx(along / 3 / m.innerRadius, rel=5e-3)
+	low, high = endHeights(m)
 	assert low + high == pytest.approx(HEIGHT * (1 + strain), rel=1e-9) and low < 0 < HEIGHT < high
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import yade
 from contactScene import apart, floor, force, sphere, springs, torque
-from hexmembrane.platens import platen
+from hexmembrane.scene.platens import platen
 from tiers import contact, engines, run, state
 from yade import Bo1_Platen_Aabb, Ig2_Platen_Sphere_ScGeom6D, Quaternion, Vector3, utils
 

@@ -5,7 +5,7 @@ import math
 
 import pytest
 from contactScene import DENSITY, floor, force, sphere, springs
-from hexmembrane.platens import platen
+from hexmembrane.scene.platens import platen
 from tiers import engines, find, owed, run, state
 from yade import PlatenDrive, Quaternion, Vector3
 

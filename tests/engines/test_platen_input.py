@@ -8,7 +8,7 @@ import sys
 
 import pytest
 from contactScene import material
-from hexmembrane.platens import platen
+from hexmembrane.scene.platens import platen
 from yade import Platen, Vector3
 
 

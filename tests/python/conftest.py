@@ -8,7 +8,7 @@ import pytest
 def runHere(O, capsys):
 	"""The same command line in this YADE: (exit code, stdout, stderr)."""
 
-	from hexmembrane.run import main
+	from hexmembrane.run.command import main
 
 	def run(*arguments):
 		O.reset()

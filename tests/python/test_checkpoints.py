@@ -4,8 +4,8 @@
 import json
 
 import pytest
-from hexmembrane import checkpoints
-from hexmembrane.checkpoints import CheckpointError
+from hexmembrane.run import checkpoints
+from hexmembrane.run.checkpoints import CheckpointError
 
 
 def test_roundTrip(tmp_path):

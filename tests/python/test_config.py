@@ -7,9 +7,9 @@ import math
 import numpy
 import pytest
 import yaml
-from hexmembrane import config as configuration
-from hexmembrane.config import Config
-from hexmembrane.schema import ConfigError, table, toDict
+from hexmembrane import configuration
+from hexmembrane.configuration import Config
+from hexmembrane.configuration.schema import ConfigError, freeKeys, table, toDict
 
 GOOD = {
 	"specimen": {"radius": 0.02, "height": 0.08, "gradation": "sand.csv", "grains": 100},
@@ -153,6 +153,30 @@ def test_tensionOnlyNeedsCentralBonds(folder):
 	given["membrane"]["poisson"] = 0.2
 	with pytest.raises(ConfigError, match="membrane.tensionOnly = True: needs central bonds.*fix: leave poisson"):
 		Config.of(given, folder)
+
+
+@pytest.mark.parametrize("text, central", [("0.333333", True), ("0.33333333", True), ("0.3333", False), ("0.25", False)])
+def test_aThirdAsItIsWritten(folder, text, central):
+	"""A third with six digits or more means bonds without shear, whose stiffness then is exactly 0."""
+	membrane = Config.of(changed("membrane.poisson", text), folder).membrane
+	assert membrane.centralBonds == central and membrane.poisson == (1 / 3 if central else float(text))
+
+
+def test_freeKeys():
+	"""Keys that may differ on resume: names, output, limits and places of files; nothing that changes a step."""
+	assert set(freeKeys(Config)) == {
+		"title",
+		"tier",
+		"specimen.packing",
+		"specimen.gradation",
+		"consolidation.unbalanced",
+		"consolidation.tolerance",
+		"consolidation.maxSteps",
+		"consolidation.timeLimit",
+		"numerics.threads",
+		"output.vtkEvery",
+		"output.checkpointEvery",
+	}
 
 
 def test_pythonObjectIsCheckedToo(folder):

@@ -6,7 +6,8 @@ import re
 
 import numpy
 import pytest
-from hexmembrane import records, timestep
+from hexmembrane.output import records
+from hexmembrane.scene import timestep
 from tinyTest import configure, runOutside
 
 

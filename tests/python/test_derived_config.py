@@ -4,8 +4,8 @@
 import pathlib
 
 import pytest
-from hexmembrane import config as configuration
-from hexmembrane.schema import ConfigError, toDict
+from hexmembrane import configuration
+from hexmembrane.configuration import ConfigError, toDict
 
 PAPER = pathlib.Path(__file__).parents[2] / "examples" / "paper"
 BASE = "specimen: {radius: 0.02, height: 0.08, gradation: sand.csv, grains: 100}\nconsolidation: {pressure: 1.0e+5, friction: 0.1}\n"

@@ -5,7 +5,7 @@ import itertools
 
 import numpy
 import pytest
-from hexmembrane import profile
+from hexmembrane.measure import profile
 
 
 def lattice(spacing, count, force):

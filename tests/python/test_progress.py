@@ -4,8 +4,8 @@
 import io
 
 import pytest
-from hexmembrane import progress
-from hexmembrane.progress import Progress, clock
+from hexmembrane.run import progress
+from hexmembrane.run.progress import Progress, clock
 
 
 class Terminal(io.StringIO):

@@ -4,9 +4,9 @@
 import math
 
 import pytest
-from hexmembrane import records
-from hexmembrane.plots import plot
-from hexmembrane.records import COLUMNS, Records
+from hexmembrane.output import records
+from hexmembrane.output.plots import plot
+from hexmembrane.output.records import COLUMNS, Records
 from PIL import Image
 
 

@@ -5,8 +5,9 @@ import math
 
 import numpy
 import pytest
-from hexmembrane import records, vtk
-from hexmembrane.packing_file import Packing, save
+from hexmembrane.output import records, vtk
+from hexmembrane.scene import geometry
+from hexmembrane.scene.packing_file import Packing, save
 from tinyTest import configure, runOutside
 
 
@@ -68,7 +69,7 @@ def test_frames(whole):
 	assert set(triangles.ravel()) == set(range(len(x))) and set(data["pressure"]) == {1e5}
 	# Outward by what the radius has grown since the last row of consolidation, and triangles that look outward.
 	assert data["normal_displacement"] == pytest.approx(numpy.full(len(x), radius[-1] - radius[-14]), rel=1e-9)
-	assert (vtk.normals(x, triangles)[:, :2] * x[:, :2]).sum(axis=1).min() > 0
+	assert (geometry.normals(x, triangles)[:, :2] * x[:, :2]).sum(axis=1).min() > 0
 
 
 def test_shearFromConsolidatedState(whole, tmp_path, runHere):
@@ -84,13 +85,13 @@ def test_shearFromConsolidatedState(whole, tmp_path, runHere):
 
 def test_bothPlatensMove(whole, tmp_path, runHere, O):
 	"""``moving: both`` shares the way between them; the strain is the same."""
-	from hexmembrane import scene
+	from hexmembrane.scene.handles import Scene
 
 	path = configure(tmp_path, boundary="wall", shear={"strain": 0.005, "moving": "both"}, output={"records": 2, "vtkEvery": 0})
 	code, _, errors = runHere(path, "--out", tmp_path / "out", "--from", whole[0] / "consolidated.yade.gz")
 	assert code == 0, errors
-	handles = scene.Scene()
-	ways = [abs(O.bodies[drive.platen].state.pos[2] - O.bodies[drive.platen].state.refPos[2]) for drive in (handles.bottom, handles.top)]
+	handles = Scene()
+	ways = [abs(O.bodies[drive.platen].state.pos[2] - O.bodies[drive.platen].state.refPos[2]) for drive in (handles.bottomDrive, handles.topDrive)]
 	table = records.read(tmp_path / "out" / "records.csv")
 	assert table["axial_strain"][-1] == pytest.approx(0.005, rel=1e-2) and ways[0] > 0
 	assert ways[0] == pytest.approx(ways[1], rel=0.05)
@@ -103,11 +104,13 @@ def test_stateOfAnotherBoundary(whole, tmp_path, runHere):
 
 def test_contactsAndEscape(whole, O):
 	"""The grains' contacts are PFC's by modulus, those with the wall are smooth, and a grain beyond the wall is named."""
-	from hexmembrane import measure, scene, stages
+	from hexmembrane.measure import rows
+	from hexmembrane.run import stages
+	from hexmembrane.scene.handles import Scene
 
 	stages.load(whole[0] / "sheared.yade.gz")
-	handles = scene.Scene()
-	grains, wall = set(handles.grainIds()), handles.lateral.servo.wall
+	handles = Scene()
+	grains, wall = set(handles.grainIds()), handles.lateralBoundary.servo.wall
 	seen = set()
 	for contact in O.interactions:
 		ids = contact.id1, contact.id2
@@ -117,10 +120,10 @@ def test_contactsAndEscape(whole, O):
 		kind = "wall" if wall in ids else "grains" if len(r) == 2 else "platens"
 		seen.add((kind, round(contact.phys.tangensOfFrictionAngle, 12)))
 	assert seen == {("wall", 0.0), ("grains", 0.5), ("platens", 0.3)}
-	members = measure.Grains.of(handles.grainIds())
-	assert measure.escaped(handles, members) is None
+	members = rows.Grains.of(handles.grainIds())
+	assert rows.escaped(handles, members) is None
 	O.bodies[members.ids[7]].state.pos = (0, 0.0205, 0.025)
-	assert measure.escaped(handles, members) == members.ids[7]
+	assert rows.escaped(handles, members) == members.ids[7]
 
 
 def loose(folder):

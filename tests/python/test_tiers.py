@@ -5,7 +5,12 @@ import pathlib
 
 import numpy
 import pytest
-from hexmembrane import config as configuration, packing_file, records, specimen, stages
+from hexmembrane import configuration
+from hexmembrane.output import records
+from hexmembrane.run import stages
+from hexmembrane.scene import packing_file, specimen
+from hexmembrane.scene.builder import setTier
+from hexmembrane.scene.handles import Scene
 from hexmembrane.run import run
 
 QUICK = pathlib.Path(__file__).parents[2] / "examples" / "quick.yaml"
@@ -77,3 +82,16 @@ def test_changesTierOnResume(O, packing, tmp_path, first, then):
 	assert numpy.abs(table["q"][shear] - whole["q"]).max() < 0.02 * numpy.abs(whole["q"]).max()
 	stages.load(tmp_path / "out" / "sheared.yade.gz")
 	assert ("CompactLoop" in [type(engine).__name__ for engine in O.engines]) == (then == "compact")
+
+
+def test_referenceStepIsALowerBound(O, packing, tmp_path):
+	"""Of the compact tier's, which is the true one: on the same contacts, for grains whose rotations are the fastest motion."""
+	config = small(packing, tier="reference", specimen={"kratio": 1.2, "rollingFriction": 0.2}, numerics={"dt": 5e-6})
+	O.reset()
+	run(config, tmp_path / "out", until="consolidation", quiet=True)
+	steps = {}
+	for tier in ("reference", "compact"):
+		setTier(configuration.derived(config, {"tier": tier}))
+		O.step()
+		steps[tier] = Scene().criticalTimeStep()
+	assert 0.8 * steps["compact"] < steps["reference"] < steps["compact"]

@@ -9,7 +9,10 @@ import time
 import numpy
 import pytest
 import yaml
-from hexmembrane import profile, records, scene, stages, vtk
+from hexmembrane.measure import profile
+from hexmembrane.output import records, vtk
+from hexmembrane.run import stages
+from hexmembrane.scene.handles import Scene
 from PIL import Image
 from tinyTest import command, configure, environment, runOutside
 
@@ -66,7 +69,7 @@ def test_stressAlongTheHeight(whole, O):
 	last = {name: column[-1] for name, column in records.read(out / "records.csv").items()}
 	stages.load(out / "sheared.yade.gz")
 	O.step()
-	handles = scene.Scene()
+	handles = Scene()
 	found, one = (profile.measure(handles, handles.grainIds(), count) for count in (6, 1))
 	assert found.edges[0] == 0 and found.edges[-1] == pytest.approx(found.height) and len(found.middle) == 6
 	for name in ("axial", "radial"):
@@ -74,7 +77,7 @@ def test_stressAlongTheHeight(whole, O):
 	# At mid-height the soil carries what the balance of forces on half the specimen says, but for contacts of the membrane across the cut.
 	balance = last["q_corrected"] + last["sigma3_applied"] + last["sigma3_membrane"]
 	assert found.axial[2:4].mean() == pytest.approx(balance, rel=0.1)
-	main = numpy.array(handles.lateral.membrane.groups)[:: handles.lateral.membrane.perRing] == 3
+	main = numpy.array(handles.lateralBoundary.membrane.groups)[:: handles.lateralBoundary.membrane.perRing] == 3
 	assert found.rowPressure[main].mean() == pytest.approx(last["sigma3_transmitted_group3"], rel=0.02)
 	assert found.radial[1:5].mean() == pytest.approx(last["sigma3_transmitted_group3"], rel=0.15)
 	with pytest.raises(ValueError, match="profile.count = 0"):
@@ -84,22 +87,22 @@ def test_stressAlongTheHeight(whole, O):
 def test_forcesThroughMidHeight(whole, O):
 	"""F + P + T_mid - T_end, as recorded, is the sum of the contact forces through the cut: that of the specimen at rest after consolidation."""
 	stages.load(whole[0] / "consolidated.yade.gz")
-	for drive in scene.Scene().bottom, scene.Scene().top:
+	for drive in Scene().bottomDrive, Scene().topDrive:
 		drive.velocity = 0
 	O.run(3000, True)
-	handles = scene.Scene()
-	handles.showContacts()
+	handles = Scene()
+	handles.exportContacts()
 	bottom, top = handles.faces()
-	middle, platens = (bottom + top) / 2, {handles.bottom.platen, handles.top.platen}
+	middle, platens = (bottom + top) / 2, {handles.bottomDrive.platen, handles.topDrive.platen}
 	cut = 0
 	for contact in O.interactions:
 		z = [O.bodies[i].state.pos[2] for i in (contact.id1, contact.id2)]
 		if not platens & {contact.id1, contact.id2} and (z[0] < middle) != (z[1] < middle):
 			force = (contact.phys.normalForce + contact.phys.shearForce)[2]  # on the second
 			cut += force if z[0] < middle else -force
-	found = handles.lateral.carried(bottom, top)
-	force = (handles.bottom.force + handles.top.force) / 2
-	assert cut == pytest.approx(force + found["pressure_axial"] + found["membrane_axial_mid"] - found["membrane_axial_end"], rel=1e-2)
+	loads = handles.lateralBoundary.ownLoads(bottom, top)
+	force = (handles.bottomDrive.force + handles.topDrive.force) / 2
+	assert cut == pytest.approx(force + loads.axialPush + loads.axialPullMiddle - loads.axialPullEnd, rel=1e-2)
 
 
 def test_energyBalance(whole):
@@ -284,26 +287,25 @@ def test_finishedTestIsLeftAsItIs(whole, runHere):
 
 def test_grainOutsideIsSeen(whole, O):
 	"""A grain put outside the membrane, or behind a platen, is named."""
-	from hexmembrane import measure, scene, stages
+	from hexmembrane.measure import rows
 
 	stages.load(whole[0] / "sheared.yade.gz")
-	handles = scene.Scene()
-	grains = measure.Grains.of(handles.grainIds())
-	assert measure.escaped(handles, grains) is None
+	handles = Scene()
+	grains = rows.Grains.of(handles.grainIds())
+	assert rows.escaped(handles, grains) is None
 	lost = grains.ids[7]
 	for place in ((0.03, 0, 0.025), (0, 0, 0.06), (0, 0, -0.01)):
 		O.bodies[lost].state.pos = place
-		assert measure.escaped(handles, grains) == lost
+		assert rows.escaped(handles, grains) == lost
 
 
 def test_frictionAfterConsolidation(whole, O):
 	"""Contacts made with the consolidation's friction have the test's own in shear, those of the membrane have none; all are PFC's by modulus."""
-	from hexmembrane import scene, stages
 	from yade import Sphere
 
 	stages.load(whole[0] / "consolidated.yade.gz")
-	handles = scene.Scene()
-	grains, membrane = set(handles.grainIds()), set(handles.lateral.membrane.ids)
+	handles = Scene()
+	grains, membrane = set(handles.grainIds()), set(handles.lateralBoundary.membrane.ids)
 	found = {"grains": set(), "membrane": set(), "platens": set()}
 	for contact in O.interactions:
 		ids = {contact.id1, contact.id2}
@@ -317,38 +319,17 @@ def test_frictionAfterConsolidation(whole, O):
 	assert {round(c.phys.tangensOfFrictionAngle, 12) for c in O.interactions} == {0.1, 0.0}
 
 
-def test_insideTube():
-	"""Inside and outside of a folded tube: one with a collar that overhangs itself."""
-	from hexmembrane.flexible_membrane import insideTube
-
-	perRing = 40
-	angle = 2 * numpy.pi * numpy.arange(perRing) / perRing
-	profile = [(1, 0), (1, 1), (2, 0.8), (2, 1.5), (1, 1.2), (1, 2)]
-	x = numpy.vstack([numpy.column_stack([r * numpy.cos(angle), r * numpy.sin(angle), numpy.full(perRing, z)]) for r, z in profile])
-	a, b = numpy.arange(perRing), numpy.roll(numpy.arange(perRing), -1)
-	triangles = []
-	for k in range(len(profile) - 1):
-		low, high = k * perRing, (k + 1) * perRing
-		triangles += [numpy.column_stack([low + a, low + b, high + a]), numpy.column_stack([low + b, high + b, high + a])]
-	triangles = numpy.vstack(triangles)
-	inside = [(0, 0, 0.1), (0.9, 0, 0.5), (0, -1.9, 1.0), (1.5, 0.2, 1.2), (0, 0, 1.9)]
-	outside = [(1.1, 0, 0.5), (1.5, 0, 0.85), (0, 1.9, 1.5), (0, 0, -0.1), (0, 0, 2.1), (5, 5, 1)]
-	assert [insideTube(p, x, triangles, perRing) for p in inside + outside] == [True] * len(inside) + [False] * len(outside)
-
-
 def test_emptySceneIsWanted(O):
 	"""The builder does not wipe a scene that somebody else made."""
-	from hexmembrane import scene
+	from hexmembrane.scene.builder import build
 	from yade import utils
 
 	O.bodies.append(utils.sphere((0, 0, 0), 1))
 	with pytest.raises(RuntimeError, match="an empty scene is needed; fix: "):
-		scene.build(None, None)
+		build(None, None)
 	assert len(O.bodies) == 1
 
 
 def test_sceneOfAnotherKind(O):
-	from hexmembrane import scene
-
 	with pytest.raises(RuntimeError, match="MembraneBonds: 1 expected"):
-		scene.Scene()
+		Scene()

@@ -5,7 +5,7 @@ import xml.etree.ElementTree
 
 import numpy
 import pytest
-from hexmembrane import vtk
+from hexmembrane.output import vtk
 
 POINTS = numpy.random.default_rng(3).normal(size=(7, 3))
 TRIANGLES = numpy.array([(0, 1, 2), (2, 3, 4), (4, 5, 6), (6, 0, 3)])
@@ -47,12 +47,3 @@ def test_series(tmp_path):
 	root = xml.etree.ElementTree.parse(tmp_path / "g.pvd").getroot()
 	found = [(float(d.get("timestep")), d.get("file")) for d in root.iter("DataSet")]
 	assert root.get("type") == "Collection" and found == [(0.0, "g-0.vtp"), (0.1, "g-1.vtp")]
-
-
-def test_normals():
-	"""Of an octahedron: along the axes; a point without triangles has none."""
-	points = numpy.array([(1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1), (9, 9, 9)], dtype=float)
-	ring = [(k, (k + 1) % 4) for k in range(4)]
-	triangles = numpy.array([(a, b, 4) for a, b in ring] + [(b, a, 5) for a, b in ring])
-	found = vtk.normals(points, triangles)
-	assert abs(found[:6] - points[:6]).max() < 1e-15 and (found[6] == 0).all()

@@ -16,6 +16,7 @@ public:
 	PaddedRings() = default;
 	PaddedRings(int perRing, int rows) : n(perRing), stride(perRing + 2), data(3 * size_t(stride) * rows, 0.), plane(size_t(stride) * rows) {}
 
+	int rows() const { return n > 0 ? int(plane / stride) : 0; }
 	bool fits(int perRing, int rows) const { return n == perRing && data.size() == 3 * size_t(perRing + 2) * rows; }
 
 	double* row(int axis, int k) { return data.data() + axis * plane + size_t(k) * stride + 1; }

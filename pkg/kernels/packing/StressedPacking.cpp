@@ -118,7 +118,7 @@ private:
 [[noreturn]] void refuse(const StressedPackingSpec& spec, bool tooDense, double reached)
 {
 	// another seed or a neighbouring porosity may end a little off what this one reached, a loose one more than a dense one
-	const double advised = tooDense ? std::ceil((reached + 0.002) * 1000) / 1000 : std::floor((reached - 0.01) * 1000) / 1000;
+	const double advised = tooDense ? std::ceil((reached + 0.005) * 1000) / 1000 : std::floor((reached - 0.01) * 1000) / 1000;
 	fail("porosity", spec.packing.porosity,
 	     std::string(tooDense ? "denser" : "looser") + " than these " + std::to_string(spec.packing.radii.size()) + " grains get at " +
 	             formatNumber(spec.stress) + " Pa with friction " + formatNumber(spec.law.friction) +

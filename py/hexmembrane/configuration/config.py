@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The configuration of a triaxial test: sections, keys, units, defaults and ranges. SI units everywhere.
+
+``Config.of({...})`` gives a checked :class:`Config`. Files: :mod:`hexmembrane.configuration.files`. Uses nothing of YADE.
+"""
+
+import dataclasses
+import pathlib
+from typing import Optional
+
+from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, section
+
+#: Keys of the specimen that are files.
+PATHS = ("packing", "gradation")
+#: Poisson's ratio of a lattice whose bonds have no shear stiffness, and how near to it a value, written with six digits say, is it.
+_CENTRAL, _NEAR = 1 / 3, 1e-6
+
+
+@dataclasses.dataclass
+class Specimen:
+	"""The grains: gradation, packing, contact law."""
+
+	radius: float = key(REQUIRED, "radius of the specimen", "m", low=0, openLow=True)
+	height: float = key(REQUIRED, "height of the specimen", "m", low=0, openLow=True)
+	packing: Optional[str] = key(None, "packing file to take instead of making one; relative to the configuration's folder", free=True)
+	gradation: Optional[str] = key(None, "CSV file of the gradation (see gradation.py); relative to the configuration's folder", free=True)
+	scale: Optional[float] = key(
+		None, "factor on the gradation's diameters; none with a wished number of grains: it follows from that", "", low=0, openLow=True
+	)
+	cutBelow: Optional[float] = key(None, "leave out grains with a diameter below this, before scaling", "m", low=0)
+	cutAbove: Optional[float] = key(None, "leave out grains with a diameter above this, before scaling", "m", low=0, openLow=True)
+	grains: Optional[int] = key(None, "number of grains wished; none: follows from porosity, volume and scale", "", low=20, high=1000000)
+	porosity: float = key(0.40, "porosity of the packing, before consolidation", "", low=0.3, high=0.6)
+	seed: int = key(1, "seed of the packing's random numbers", "", low=0, high=2**31 - 1)
+	density: float = key(2650.0, "density of the grains", "kg/m3", low=0, openLow=True)
+	stress: Optional[float] = key(
+		None,
+		"isotropic stress under which the packing is made, small against the test's; none: grains that touch nothing",
+		"Pa",
+		low=0,
+		openLow=True,
+	)
+	friction: float = key(
+		0.5,
+		"coefficient of friction mu between grains, tan of the angle, Fs <= mu Fn: in shear, in consolidation unless that has its own, "
+		"and in a packing made under stress",
+		"",
+		low=0,
+		high=5,
+	)
+	rollingFriction: float = key(0.0, "coefficient of rolling friction mu_r between grains, moment <= mu_r R1 R2/(R1 + R2) Fn", "", low=0, high=5)
+	packingRollingFriction: float = key(
+		0.0, "coefficient of rolling friction while a packing is made under stress; looser ones need it, it may be rollingFriction's value", "", low=0, high=5
+	)
+	emod: float = key(
+		4e7,
+		"contact modulus of PFC's deformability: kn = pi emod min(R1, R2)^2/(R1 + R2), pi emod R on platens and wall; "
+		"equal grains of diameter d: kn/(p d) = pi emod/(4 p), which should be 300 or more",
+		"Pa",
+		low=0,
+		openLow=True,
+	)
+	kratio: float = key(3.0, "kn/ks of the contacts", "", low=1, high=1000)
+
+	def check(self, path):
+		if (self.packing is None) == (self.gradation is None):
+			raise ConfigError(
+				f"{path}.gradation", self.gradation, "the grains need one source, a gradation or a packing", "give exactly one of the two"
+			)
+		if self.scale is not None and self.grains is not None:
+			raise ConfigError(f"{path}.scale", self.scale, "the number of grains is wished too, it fixes the scale", "remove one of the two")
+		if None not in (self.cutBelow, self.cutAbove) and self.cutBelow >= self.cutAbove:
+			raise ConfigError(f"{path}.cutBelow", self.cutBelow, f"is not below cutAbove = {self.cutAbove}", "swap or change the cuts")
+
+
+@dataclasses.dataclass
+class Membrane:
+	"""The hexagonal membrane, its own stiffness and the pressure on it."""
+
+	particleRadius: Optional[float] = key(
+		None, "radius of the membrane's spheres, adjusted so that rings close; none: from sizeRatio", "m", low=0, openLow=True
+	)
+	sizeRatio: float = key(
+		0.8, "R/r, membrane sphere to smallest grain radius, used without particleRadius; Eq. 1 is its upper limit", "", low=0, openLow=True
+	)
+	placement: str = key(
+		"outside", "inner surface ('outside') or centres ('centred') on the specimen's surface", "", choices=("outside", "centred")
+	)
+	oRingRows: int = key(2, "rows at each end, beyond the specimen, held by the O-rings (group 1)", "", low=1, high=50)
+	platenRows: Optional[int] = key(
+		None, "rows beside each platen, pressed radially (group 2); none: as many as cover the smallest grain, 2 at least", "", low=0, high=50
+	)
+	young: float = key(1.0e6, "Young's modulus of the membrane's material", "Pa", low=0, openLow=True)
+	thickness: float = key(
+		3e-4, "thickness of the material; only young * thickness matters, twice pressure * grain radius or more", "m", low=0, openLow=True
+	)
+	poisson: float = key(_CENTRAL, "in-plane Poisson's ratio of the lattice; 1/3 has central forces only", "", low=0, high=0.33333334)
+	density: float = key(1000.0, "density of the membrane's spheres", "kg/m3", low=0, openLow=True)
+	densityScaling: Optional[float] = key(
+		1.0, "factor on the mass of the membrane's spheres, for a longer time step where they set it; none: as much as lets the grains set it", "", low=1
+	)
+	tensionOnly: bool = key(False, "bonds carry tension only: the sheet wrinkles instead of carrying compression")
+	oRings: str = key("platens", "O-ring rows ride with the platens or stay fixed in space", "", choices=("platens", "fixed"))
+	surface: str = key("inner", "surface on which the pressure acts, inner surface or sphere centres", "", choices=("inner", "centre"))
+	areaRule: str = key(
+		"tributary",
+		"area of a particle of group 2: its share of the present inner surface, 2 pi (r - R)/n times the rings' distance, or the cube's (2R)^2",
+		"",
+		choices=("tributary", "cube"),
+	)
+	gain: float = key(0.05, "gain of the loop that brings group 2's transmitted pressure to the target, 0: open loop", "", low=0, high=1)
+	pressureGain: float = key(
+		0.2,
+		"the same of the main body, whose own tension presses on the soil too; 0: the pressure asked for is on the membrane",
+		"",
+		low=0,
+		high=1,
+	)
+
+	@property
+	def centralBonds(self):
+		"""Whether the bonds carry normal forces only, so that the spheres need not turn."""
+		return self.poisson == _CENTRAL
+
+	def check(self, path):
+		if abs(self.poisson - _CENTRAL) <= _NEAR:
+			self.poisson = _CENTRAL
+		if self.tensionOnly and not self.centralBonds:
+			raise ConfigError(
+				f"{path}.tensionOnly", True, f"needs central bonds, and poisson = {self.poisson:g} has shear springs", "leave poisson at 1/3"
+			)
+
+
+@dataclasses.dataclass
+class Wall:
+	"""The rigid cylinder wall of ``boundary: wall``: one radius, moved by a servo that holds the mean radial stress."""
+
+	friction: float = key(0.0, "coefficient of friction on the wall; with grains the lesser of both acts", "", low=0, high=5)
+	damping: float = key(
+		0.2,
+		"damping ratio of the radial servo, 1: critical for the wall's contacts alone; while the radius grows at v the wall carries "
+		"4 damping K dt v more than its target, K the stiffness of its contacts",
+		"",
+		low=0,
+		high=10,
+	)
+	tolerance: float = key(
+		0.01, "relative error of the radial stress below which the servo has reached its target", "", low=0, high=0.5, openLow=True
+	)
+	maxVelocity: Optional[float] = key(
+		None, "largest velocity of the radius; none: 1e-3 radius/(d sqrt(rho/pressure)), an inertial number of 1e-3", "m/s", low=0, openLow=True
+	)
+
+
+@dataclasses.dataclass
+class Platens:
+	"""The two rigid end platens."""
+
+	thickness: Optional[float] = key(None, "thickness; none: the membrane's end rows plus twice the largest travel", "m", low=0, openLow=True)
+	friction: float = key(0.3, "coefficient of friction on the platens, no rolling friction; with grains the lesser of both acts", "", low=0, high=5)
+
+
+@dataclasses.dataclass
+class Consolidation:
+	"""Isotropic consolidation."""
+
+	pressure: float = key(REQUIRED, "confining pressure sigma3, pushes inwards", "Pa", low=0, openLow=True)
+	rampTime: Optional[float] = key(
+		None, "time over which the pressure rises smoothly; none: 30 d sqrt(rho/pressure), d the mean grain diameter", "s", low=0, openLow=True
+	)
+	friction: Optional[float] = key(
+		None, "coefficient of friction between grains until the end of consolidation; none: specimen.friction; lower: denser", "", low=0, high=5
+	)
+	unbalanced: float = key(1e-3, "limit of the unbalanced force ratio, membrane counted", "", low=0, high=0.1, openLow=True, free=True)
+	tolerance: Optional[float] = key(
+		None,
+		"largest relative distance of transmitted pressure and axial stress from the pressure; none: 0.005, and 0.05 with membrane.pressureGain 0",
+		"",
+		low=0,
+		high=0.5,
+		openLow=True,
+		free=True,
+	)
+	maxSteps: int = key(200000, "steps after which a test that has not come to rest stops with an error", "", low=100, free=True)
+	timeLimit: Optional[float] = key(
+		None,
+		"time that the servos of top platen and rigid wall have to reach each target once, else the test stops with an error; none: maxSteps alone limits",
+		"s",
+		low=0,
+		openLow=True,
+		free=True,
+	)
+
+
+@dataclasses.dataclass
+class Shear:
+	"""Shearing at constant confining pressure."""
+
+	strain: float = key(0.12, "axial strain at the end, compression positive", "", low=0, high=0.5, openLow=True)
+	velocity: float = key(0.02, "speed at which the platens approach each other", "m/s", low=0, high=10, openLow=True)
+	moving: str = key("top", "platens that move; both: half the velocity each", "", choices=("top", "both"))
+	rampStrain: float = key(0.0005, "axial strain over which the velocity rises smoothly from 0", "", low=0, high=0.1)
+
+
+@dataclasses.dataclass
+class Numerics:
+	"""Time step, damping, contact detection, threads."""
+
+	dt: Optional[float] = key(None, "time step; none: safety times the critical one of contacts and membrane, rotations included", "s", low=0, openLow=True)
+	safety: float = key(0.5, "share of the critical time step", "", low=0, high=1, openLow=True)
+	damping: float = key(0.2, "local (Cundall) damping of NewtonIntegrator", "", low=0, high=1, openHigh=True)
+	verlet: float = key(0.2, "contact detection's skin in the reference tier, as a share of the smallest sphere's radius", "", low=0, high=1)
+	skin: float = key(0.3, "skin of the neighbour lists in the compact tier, as a share of the smallest sphere's radius", "", low=0, high=1, openLow=True)
+	substeps: int = key(100, "steps that the compact tier takes in one YADE iteration at most", "", low=1)
+	threads: Optional[int] = key(None, "OpenMP threads; none: as YADE was started", "", low=1, high=1024, free=True)
+
+
+@dataclasses.dataclass
+class Output:
+	"""What is written and how often."""
+
+	records: int = key(120, "rows of records.csv in shear", "", low=1, high=1000000)
+	consolidationSteps: int = key(500, "steps between rows in consolidation", "", low=1)
+	vtkEvery: int = key(20, "rows between VTK frames in shear, first and last state always; 0: no VTK", "", low=0, free=True)
+	checkpointEvery: int = key(20, "rows between checkpoints, start of the consolidation and end of each stage always; 0: only there", "", low=0, free=True)
+	energy: bool = key(True, "track energies and record their balance")
+
+
+@dataclasses.dataclass
+class Config:
+	"""A whole test."""
+
+	title: str = key("triaxial test", "a name for the plot and the log", free=True)
+	tier: str = key(
+		"compact",
+		"how steps are taken: by one engine over flat arrays ('compact', an order of magnitude faster) or by YADE's own loop ('reference')",
+		"",
+		choices=("compact", "reference"),
+		free=True,
+	)
+	boundary: str = key(
+		"membrane", "lateral boundary of the specimen: flexible membrane or rigid cylinder wall; the packing is the same", "", choices=("membrane", "wall")
+	)
+	specimen: Specimen = section(Specimen, "the grains")
+	membrane: Membrane = section(Membrane, "the flexible membrane; particleRadius and placement also say the packing's radius")
+	wall: Wall = section(Wall, "the rigid wall, used with boundary: wall")
+	platens: Platens = section(Platens, "the end platens")
+	consolidation: Consolidation = section(Consolidation, "isotropic consolidation")
+	shear: Shear = section(Shear, "shearing")
+	numerics: Numerics = section(Numerics, "time step, damping, threads")
+	output: Output = section(Output, "records, VTK, checkpoints")
+
+	@classmethod
+	def of(cls, values, folder="."):
+		"""A checked configuration from nested dictionaries; relative paths count from ``folder``.
+
+		:raises ConfigError: says key path, value, what is wrong and the fix.
+		"""
+		if isinstance(values, dict):
+			values = {name: value for name, value in values.items() if name != "made"}
+		config = build(cls, values)
+		if config.membrane.placement == "centred" and config.membrane.particleRadius is None:
+			raise ConfigError("membrane.placement", "centred", "the soil's radius then follows from the particle's radius", "give membrane.particleRadius")
+		for name in PATHS:
+			path = getattr(config.specimen, name)
+			if path is not None:
+				path = pathlib.Path(folder, path).expanduser().resolve()
+				if not path.is_file():
+					raise ConfigError(f"specimen.{name}", str(path), "there is no such file", "correct the path")
+				setattr(config.specimen, name, str(path))
+		return config

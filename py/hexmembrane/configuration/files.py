@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Configurations from files and from other configurations, and the resolved one that is written back. Uses nothing of YADE itself.
+
+``load('test.yaml')`` reads and checks; ``derived(config, changes)`` changes a checked one; ``save(config, path)`` writes every
+key with date and versions, and the written file can be run again.
+"""
+
+import datetime
+import os
+import pathlib
+import platform
+import subprocess
+import sys
+
+import numpy
+import yaml
+
+import hexmembrane
+from hexmembrane.configuration.config import PATHS, Config
+from hexmembrane.configuration.schema import ConfigError, toDict
+
+
+def merged(base, changes):
+	"""Nested dictionaries with changes: those of a section change its keys, everything else is replaced; neither argument is changed."""
+	result = dict(base)
+	for name, value in changes.items():
+		old = result.get(name)
+		result[name] = merged(old, value) if isinstance(old, dict) and isinstance(value, dict) else value
+	return result
+
+
+def derived(config, changes):
+	"""A checked configuration like ``config`` but for ``changes``, such as ``{"boundary": "wall", "specimen": {"seed": 2}}``.
+
+	:raises ConfigError: as :meth:`Config.of`.
+	"""
+	return Config.of(merged(toDict(config), changes))
+
+
+def load(path):
+	"""The checked configuration in a YAML file. With a key ``base``, another file relative to this one, it is that with this one's changes.
+
+	:raises ConfigError: a file is missing or no YAML, is its own base, or a key is wrong.
+	"""
+	return Config.of(*_layers(pathlib.Path(path), ()))
+
+
+def _layers(path, above):
+	"""(keys of the file and its bases, folder that relative paths count from); ``above``: the files that it is a base of."""
+	keys = _read(path)
+	if not isinstance(keys, dict) or "base" not in keys:
+		return keys, path.parent
+	changes = {name: value for name, value in keys.items() if name != "base"}
+	if not isinstance(keys["base"], str):
+		raise ConfigError("base", keys["base"], "is not text", "give the YAML file that this one changes")
+	base = path.parent / keys["base"]
+	if base.resolve() in (*above, path.resolve()):
+		raise ConfigError("base", keys["base"], "is its own base", "correct the path")
+	below, folder = _layers(base, (*above, path.resolve()))
+	if not isinstance(below, dict):
+		raise ConfigError("base", str(base), "is not a mapping of keys", "write 'key: value' lines in it")
+	specimen = below.get("specimen")
+	if isinstance(specimen, dict):
+		paths = {name: os.path.join(folder, specimen[name]) for name in PATHS if isinstance(specimen.get(name), str)}
+		below = merged(below, {"specimen": {name: os.path.abspath(os.path.expanduser(value)) for name, value in paths.items()}})
+	return merged(below, changes), path.parent
+
+
+def _read(path):
+	"""What the YAML file says."""
+	try:
+		text = path.read_text(encoding="utf-8")
+	except OSError as error:
+		raise ConfigError("configuration", str(path), f"cannot be read ({error.strerror})", "correct the path") from None
+	except UnicodeDecodeError:
+		raise ConfigError("configuration", str(path), "is not text in UTF-8", "give a YAML file") from None
+	try:
+		return yaml.load(text, Loader=_UniqueKeys)
+	except yaml.YAMLError as error:
+		where = getattr(error, "problem_mark", None)
+		line = f", line {where.line + 1}" if where else ""
+		problem = getattr(error, "problem", None) or error
+		raise ConfigError("configuration", f"{path}{line}", f"is not YAML ({problem})", "correct the line") from None
+
+
+class _UniqueKeys(yaml.SafeLoader):
+	"""PyYAML's safe loader, except that a key given twice is an error and not silently the last one."""
+
+	def construct_mapping(self, node, deep=False):
+		seen = set()
+		for place, _ in node.value:
+			name = self.construct_object(place, deep=True)
+			if not isinstance(name, str):
+				raise yaml.constructor.ConstructorError(None, None, f"key {name!r} is not text", place.start_mark)
+			if name in seen:
+				raise yaml.constructor.ConstructorError(None, None, f"key '{name}' is given twice", place.start_mark)
+			seen.add(name)
+		return super().construct_mapping(node, deep)
+
+
+def _commit():
+	"""The git commit of the checkout that this package is in ('-dirty' when changed), None elsewhere."""
+	here = os.path.dirname(os.path.abspath(__file__))
+	try:
+		said = subprocess.run(
+			["git", "-C", here, "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"], capture_output=True, text=True, timeout=10
+		)
+	except (OSError, subprocess.TimeoutExpired):
+		return None
+	return said.stdout.strip() if said.returncode == 0 else None
+
+
+def resolved(config):
+	"""The configuration with every default filled in and, under ``made``, date, versions and threads; ready for YAML."""
+	origin = {
+		"date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
+		"hexmembrane": hexmembrane.__version__,
+		"commit": _commit(),
+		"python": platform.python_version(),
+		"numpy": numpy.__version__,
+		"machine": platform.machine(),
+	}
+	if "yade" in sys.modules:
+		import yade.config
+
+		origin.update(yade=yade.config.version, threads=yade.wrapper.Omega().numThreads)
+	return {**toDict(config), "made": origin}
+
+
+def save(config, path):
+	"""Write ``resolved(config)`` as YAML, by temporary name and rename."""
+	path = pathlib.Path(path)
+	part = path.with_name(path.name + ".part")
+	part.write_text(yaml.safe_dump(resolved(config), sort_keys=False, allow_unicode=True, width=110), encoding="utf-8")
+	part.replace(path)

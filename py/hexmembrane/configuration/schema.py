@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Checked sections of a configuration, built from dataclasses.
+
+A section is a dataclass whose fields are made by :func:`key`; each states its purpose, unit, default and range once, and
+that one statement checks the input, writes the resolved configuration and makes the table of keys in the documentation.
+A section may have a method ``check(path)`` for what concerns several keys at once.
+"""
+
+import dataclasses
+import difflib
+import math
+import typing
+
+
+class ConfigError(ValueError):
+	"""Bad configuration: the message names the key's path, its value, what is wrong and the fix."""
+
+	def __init__(self, path, value, wrong, fix):
+		self.path, self.value = path, value
+		super().__init__(f"{path} = {value!r}: {wrong}; fix: {fix}")
+
+
+@dataclasses.dataclass(frozen=True)
+class Key:
+	"""What is known of one key.
+
+	``low`` and ``high`` are inclusive unless the matching ``open...`` is set. ``free``: the value may differ when a test is resumed, since it does
+	not change what has been computed.
+	"""
+
+	doc: str
+	unit: str = ""
+	low: float = -math.inf
+	high: float = math.inf
+	openLow: bool = False
+	openHigh: bool = False
+	choices: tuple = ()
+	free: bool = False
+
+	def range(self):
+		"""The allowed values in words, '' when everything of the type is allowed."""
+		if self.choices:
+			return " or ".join(f"'{choice}'" for choice in self.choices)
+		low = "" if self.low == -math.inf else ("> " if self.openLow else ">= ") + f"{self.low:g}"
+		high = "" if self.high == math.inf else ("< " if self.openHigh else "<= ") + f"{self.high:g}"
+		return ", ".join(part for part in (low, high) if part)
+
+	def holds(self, value):
+		below = value <= self.low if self.openLow else value < self.low
+		above = value >= self.high if self.openHigh else value > self.high
+		return not below and not above
+
+
+def key(default, doc, unit="", **more):
+	"""A dataclass field for one configuration key; ``default=REQUIRED`` makes the key compulsory; ``more``: fields of :class:`Key`."""
+	return dataclasses.field(default=default, metadata={"key": Key(doc, unit, **more)})
+
+
+class _Required:
+	def __repr__(self):
+		return "required"
+
+
+REQUIRED = _Required()
+
+
+def section(cls, doc):
+	"""A dataclass field for a section of class ``cls``."""
+	return dataclasses.field(default_factory=cls, metadata={"section": cls, "doc": doc})
+
+
+def sections(cls):
+	"""The fields of ``cls`` that are sections themselves."""
+	return [field for field in dataclasses.fields(cls) if "section" in field.metadata]
+
+
+def _bare(annotation):
+	"""(type, may be None) of a field's annotation."""
+	args = [arg for arg in typing.get_args(annotation) if arg is not type(None)]
+	if typing.get_origin(annotation) is typing.Union or type(None) in typing.get_args(annotation):
+		return args[0], True
+	return annotation, False
+
+
+def _number(path, value, kind, spec):
+	"""``value`` as a finite float or an int; text such as '1e5', which YAML 1.1 does not take for a number, is accepted."""
+	wanted = f"a {'whole ' if kind is int else ''}number" + (f" in {spec.unit}" if spec.unit else "")
+	fix = f"give {wanted}" + (f" {spec.range()}" if spec.range() else "")
+	if isinstance(value, bool) or not isinstance(value, (int, float, str)) and not hasattr(value, "__float__"):
+		raise ConfigError(path, value, f"is not {wanted}", fix)
+	try:
+		number = float(value)
+	except (TypeError, ValueError):
+		raise ConfigError(path, value, f"is not {wanted}", fix) from None
+	if not math.isfinite(number):
+		raise ConfigError(path, value, "is not finite", fix)
+	if kind is int:
+		if number != int(number):
+			raise ConfigError(path, value, "is not a whole number", fix)
+		number = int(value) if isinstance(value, int) else int(number)
+	if not spec.holds(number):
+		raise ConfigError(path, value, f"is out of range, {spec.range()} is allowed", fix)
+	return number
+
+
+def _value(path, value, annotation, spec):
+	"""``value`` checked against the key's type and range, and converted."""
+	kind, optional = _bare(annotation)
+	if value is None:
+		if optional:
+			return None
+		raise ConfigError(path, value, "has no value", f"give one or remove the key: {spec.doc}")
+	if typing.get_origin(kind) is list:
+		if not isinstance(value, (list, tuple)):
+			raise ConfigError(path, value, "is not a list", "write [first, second, ...]")
+		return [_value(f"{path}[{i}]", item, typing.get_args(kind)[0], spec) for i, item in enumerate(value)]
+	if kind in (int, float):
+		return _number(path, value, kind, spec)
+	if kind is bool:
+		if not isinstance(value, bool):
+			raise ConfigError(path, value, "is neither true nor false", "write true or false")
+		return value
+	if not isinstance(value, str) and not hasattr(value, "__fspath__"):
+		raise ConfigError(path, value, "is not text", "give text" + (f": {spec.range()}" if spec.choices else ""))
+	value = str(value)
+	if spec.choices and value not in spec.choices:
+		raise ConfigError(path, value, "is not one of the choices", f"{_guess(value, spec.choices)}use {spec.range()}")
+	return value
+
+
+def _guess(name, known):
+	close = difflib.get_close_matches(str(name), known, 1, 0.6)
+	return f"did you mean '{close[0]}'? " if close else ""
+
+
+def build(cls, mapping, path=""):
+	"""An instance of the section ``cls`` from a mapping (or an instance, whose values are checked again).
+
+	:raises ConfigError: unknown key, wrong type, not finite, out of range, missing.
+	"""
+	if isinstance(mapping, cls):
+		mapping = toDict(mapping)
+	mapping = {} if mapping is None else mapping
+	if not isinstance(mapping, dict):
+		raise ConfigError(path or "configuration", mapping, "is not a mapping of keys", "write 'key: value' lines")
+	hints = typing.get_type_hints(cls)
+	fields = {field.name: field for field in dataclasses.fields(cls)}
+	at = f"{path}." if path else ""
+	for name in mapping:
+		if name not in fields:
+			raise ConfigError(
+				f"{at}{name}", mapping[name], "unknown key", f"{_guess(name, fields)}known keys are {', '.join(fields)}"
+			)
+	values = {}
+	for name, field in fields.items():
+		if "section" in field.metadata:
+			values[name] = build(field.metadata["section"], mapping.get(name), at + name)
+			continue
+		spec = field.metadata["key"]
+		if name in mapping:
+			values[name] = _value(at + name, mapping[name], hints[name], spec)
+		elif field.default is REQUIRED:
+			raise ConfigError(at + name, None, "is missing", f"give {spec.doc}" + (f" ({spec.unit})" if spec.unit else ""))
+		else:
+			values[name] = field.default
+	instance = cls(**values)
+	if hasattr(instance, "check"):
+		instance.check(path)
+	return instance
+
+
+def toDict(instance):
+	"""The section as nested plain dictionaries, in the order of the fields."""
+	return dataclasses.asdict(instance)
+
+
+def freeKeys(cls, path=""):
+	"""Paths of the keys in ``cls`` and its sections that are ``free``."""
+	paths = []
+	for field in dataclasses.fields(cls):
+		name = f"{path}.{field.name}" if path else field.name
+		if "section" in field.metadata:
+			paths += freeKeys(field.metadata["section"], name)
+		elif field.metadata["key"].free:
+			paths.append(name)
+	return paths
+
+
+def table(cls, path=""):
+	"""Rows (key path, type, unit, default, range, doc) of every key in ``cls`` and its sections."""
+	hints = typing.get_type_hints(cls)
+	rows = []
+	for field in dataclasses.fields(cls):
+		name = f"{path}.{field.name}" if path else field.name
+		if "section" in field.metadata:
+			rows += table(field.metadata["section"], name)
+			continue
+		spec = field.metadata["key"]
+		kind, optional = _bare(hints[field.name])
+		kind = {float: "number", int: "whole number", bool: "true/false", str: "text"}.get(kind, "list of numbers")
+		default = "none" if field.default is None else str(field.default).lower() if kind == "true/false" else str(field.default)
+		if isinstance(field.default, float):
+			default = f"{field.default:g}"
+		rows.append((name, kind + (" or none" if optional else ""), spec.unit, default, spec.range(), spec.doc))
+	return rows
+
+
+def markdown(cls):
+	"""The tables of keys for the documentation, one Markdown table for the top level and one for each section."""
+	inner = {field.name for field in sections(cls)}
+	parts = [("top level", [row for row in table(cls) if row[0].split(".")[0] not in inner])]
+	parts += [(f"`{field.name}`: {field.metadata['doc']}", table(field.metadata["section"])) for field in sections(cls)]
+	lines = []
+	for title, rows in parts:
+		lines += [f"### {title}", "", "| key | unit | default | range | purpose |", "| --- | --- | --- | --- | --- |"]
+		for name, kind, unit, default, allowed, doc in rows:
+			allowed = ", ".join(part for part in (kind, allowed) if part)
+			lines.append(f"| `{name}` | {unit} | {default} | {allowed} | {doc} |")
+		lines.append("")
+	return "\n".join(lines)

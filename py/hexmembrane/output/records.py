@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The rows of records.csv: what each column is, its unit, sign and source, stated once, here.
+
+Every row is written whole and flushed, so that a killed run leaves a readable file; a resumed run cuts the rows after its
+checkpoint and goes on. Strains count from the start of the row's stage (``stage`` column). Needs no YADE.
+"""
+
+import dataclasses
+import math
+import os
+import pathlib
+
+import numpy
+
+
+@dataclasses.dataclass(frozen=True)
+class Column:
+	"""One column; ``doc`` says sign, formula and source; ``optional``: may be nan."""
+
+	name: str
+	unit: str
+	doc: str
+	optional: bool = False
+
+	@property
+	def header(self):
+		return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+COLUMNS = (
+	Column("stage", "", "consolidation or shear"),
+	Column("step", "", "YADE's step, O.iter"),
+	Column("time", "s", "YADE's time, O.time"),
+	Column("axial_strain", "-", "eps1 = (h0 - h)/h0 with h the distance of the platens' faces; compression positive"),
+	Column(
+		"q",
+		"Pa",
+		"deviatoric stress (F - sigma3 Ae)/Am: F mean platen force, Ae face of a platen (pi r^2 in a rigid wall), Am mean area V/h; compression positive",
+	),
+	Column(
+		"axial_stress",
+		"Pa",
+		"q + sigma3_target, at mid-height by the balance of forces on half the specimen; compression positive",
+	),
+	Column("sigma3_target", "Pa", "sigma3: pressure asked for, that the soil is to receive; pushes inwards"),
+	Column(
+		"sigma3_applied",
+		"Pa",
+		"pressure on the membrane's main body: sigma3 with membrane.pressureGain 0, else what brings the transmitted pressure to it; of a rigid wall sigma3",
+	),
+	Column(
+		"sigma3_transmitted_group3",
+		"Pa",
+		"radial contact forces of the membrane's main body on grains and platens over its smooth inner area; inwards positive; "
+		"of a rigid wall (all three columns): normal forces on it over 2 pi r h",
+	),
+	Column(
+		"sigma3_transmitted_group2",
+		"Pa",
+		"the same of the rows beside the platens (their forces on the platens' sides included)",
+	),
+	Column("sigma3_transmitted_all", "Pa", "the same of the whole membrane between the O-rings"),
+	Column(
+		"volumetric_strain_radius",
+		"-",
+		"theta = (h - h0)/h0 + 2 (r - r0)/r0, r as mean_radius (Eq. 6, first order in the strains); dilation positive",
+	),
+	Column(
+		"volumetric_strain_volume",
+		"-",
+		"(V - V0)/V0, V enclosed by the inner surface between the platens' faces; dilation positive",
+	),
+	Column("porosity", "-", "1 - (volume of the grains)/V; overlaps at contacts are not taken off"),
+	Column("coordination", "-", "2 (contacts among grains with a normal force)/(number of grains)"),
+	Column("unbalanced", "-", "YADE's unbalancedForce: mean force on moving bodies (membrane too) over mean contact force"),
+	Column(
+		"membrane_unbalanced",
+		"-",
+		"mean resultant force on the membrane's particles of groups 2 and 3, mass times acceleration, over sigma3 2 sqrt(3) R^2: "
+		"what its inertia adds, and density scaling with it; 0 with a rigid wall",
+	),
+	Column("inertial_number", "-", "I = (approach speed of the platens/h) d sqrt(rho/sigma3), d mean diameter of the grains"),
+	Column("platen_force_bottom", "N", "on the bottom platen along its outward normal; positive when the specimen pushes back"),
+	Column("platen_force_top", "N", "the same on the top platen"),
+	Column("height", "m", "h, distance of the platens' faces"),
+	Column("mean_radius", "m", "r, mean radius of the membrane's inner surface, or radius of the rigid wall"),
+	Column("volume", "m3", "V, enclosed by the inner surface between the platens' faces"),
+	Column("membrane_area", "m2", "area on which the pressure acts (group 3), 2 pi r h of a rigid wall"),
+	Column("bonds_broken", "", "broken membrane bonds, 0 with a rigid wall"),
+	Column("elapsed", "s", "wall clock spent on the test so far, set-up of a resumed run not counted"),
+	Column("energy_elastic", "J", "elastic energy of the contacts; this and all energies: nan with output.energy: false", True),
+	Column("energy_membrane", "J", "elastic energy of the membrane's bonds, 0 with a rigid wall", True),
+	Column("energy_kinetic", "J", "kinetic energy, half a step before", True),
+	Column("energy_friction", "J", "dissipated by contacts since the stage began: sliding, rolling, broken contact bonds", True),
+	Column("energy_damping", "J", "dissipated by the local damping since the stage began", True),
+	Column(
+		"work_boundary",
+		"J",
+		"work of platens, confining pressure, O-rings or rigid wall since the stage began; positive when done on the specimen",
+		True,
+	),
+	Column(
+		"energy_error",
+		"-",
+		"(work - change of the stored energy - dissipated energy, since the stage began) over the larger of that work and the energy stored now",
+		True,
+	),
+	Column(
+		"pressure_axial",
+		"N",
+		"P, axial parts of the applied confining pressure's forces on each half of the membrane, towards mid-height; 0 with a rigid wall",
+	),
+	Column(
+		"membrane_axial_mid",
+		"N",
+		"axial pull of the membrane through the plane at mid-height, from the forces of its bonds; tension positive; 0 with a rigid wall",
+	),
+	Column("membrane_axial_end", "N", "the same just inside the O-rings, mean of both ends"),
+	Column(
+		"sigma3_membrane",
+		"Pa",
+		"part of the membrane's own tension in what its main body transmits: forces of the bonds towards the axis over the same "
+		"area; inwards positive; 0 with a rigid wall",
+	),
+	Column(
+		"q_corrected",
+		"Pa",
+		"(F + pressure_axial + membrane_axial_mid - membrane_axial_end)/Am - (sigma3_applied + sigma3_membrane): q without the membrane, "
+		"by the forces that act; q with a rigid wall, whose friction stays in it; compression positive",
+	),
+)
+
+_TEXT = ("stage",)
+
+
+class Records:
+	"""records.csv being written.
+
+	:param path: the file.
+	:param keep: bytes to keep of an existing file (a checkpoint's :meth:`position`); None starts anew.
+	:raises ValueError: the existing file is shorter than ``keep`` or has other columns.
+	"""
+
+	def __init__(self, path, keep=None):
+		self.path = pathlib.Path(path)
+		header = ",".join(column.header for column in COLUMNS) + "\n"
+		if keep is None:
+			self._file = open(self.path, "wb")
+			self._write(header)
+			return
+		size = self.path.stat().st_size if self.path.is_file() else 0
+		if size < keep:
+			raise ValueError(
+				f"records = '{self.path}': has {size} bytes, its checkpoint was taken at {keep}; fix: put the file back or start anew"
+			)
+		self._file = open(self.path, "r+b")
+		if self._file.readline().decode(errors="replace") != header:
+			self._file.close()
+			raise ValueError(f"records = '{self.path}': has other columns than this version writes; fix: start anew in another folder")
+		self._file.truncate(keep)
+		self._file.seek(keep)
+
+	def _write(self, line):
+		self._file.write(line.encode())
+		self._file.flush()
+
+	def append(self, row):
+		"""Write one row, a mapping with exactly the columns' names; values are written so that they read back exactly.
+
+		:raises ValueError: a column is missing or unknown, or a number is not finite (nan is allowed in the optional columns).
+		"""
+		names = [column.name for column in COLUMNS]
+		if set(row) != set(names):
+			odd = sorted(set(row) ^ set(names))
+			raise ValueError(f"records.row = {odd}: missing or unknown columns; fix: give each of COLUMNS once")
+		cells = []
+		for column in COLUMNS:
+			name, value = column.name, row[column.name]
+			if name in _TEXT:
+				cells.append(value)
+				continue
+			if column.optional and math.isnan(value):
+				cells.append("nan")
+				continue
+			if not math.isfinite(value):
+				raise ValueError(f"records.{name} = {value} in step {row['step']}: is not finite; fix: see the state at the last checkpoint")
+			cells.append(repr(int(value)) if float(value).is_integer() and abs(value) < 2**53 else repr(float(value)))
+		self._write(",".join(cells) + "\n")
+
+	def position(self):
+		"""Bytes written so far; they are on the disk when this returns."""
+		os.fsync(self._file.fileno())
+		return self._file.tell()
+
+	def close(self):
+		self._file.close()
+
+	def __enter__(self):
+		return self
+
+	def __exit__(self, *_):
+		self.close()
+
+
+def read(path):
+	"""The records as a dict of column name -> numpy array (``stage``: list of text). A last row cut by a kill is left out.
+
+	:raises ValueError: no records file, or a row with a wrong number of cells.
+	"""
+	lines = pathlib.Path(path).read_text(encoding="utf-8").split("\n")
+	names = [header.split(" [")[0] for header in lines[0].split(",")]
+	if "stage" not in names or "step" not in names:
+		raise ValueError(f"records = '{path}': has no header of records.csv; fix: give the records.csv of a test")
+	rows = [line.split(",") for line in lines[1:-1]]
+	for number, row in enumerate(rows, 2):
+		if len(row) != len(names):
+			raise ValueError(f"records = '{path}', line {number}: has {len(row)} cells for {len(names)} columns; fix: restore the file")
+	table = {}
+	for k, name in enumerate(names):
+		cells = [row[k] for row in rows]
+		table[name] = cells if name in _TEXT else numpy.array([float(cell) for cell in cells])
+	return table
+
+
+def markdown():
+	"""The table of columns for the documentation."""
+	lines = ["| column | unit | meaning and sign |", "| --- | --- | --- |"]
+	return "\n".join(lines + [f"| `{column.name}` | {column.unit} | {column.doc} |" for column in COLUMNS])

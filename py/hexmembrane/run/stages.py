@@ -1,0 +1,341 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The stages of a test on the scene in ``O``: consolidation and shear, with records, VTK frames and checkpoints in one folder.
+
+Python is not in the loop of a step: YADE runs in chunks of steps between rows. After each checkpoint the test goes on from the
+saved state itself. A resumed run and one that was never stopped take the same steps for that reason, bit by bit on one thread.
+"""
+
+import math
+import pathlib
+import time
+
+from yade import O
+
+from hexmembrane.measure import rows
+from hexmembrane.output.frames import Frames
+from hexmembrane.output.records import Records
+from hexmembrane.run import checkpoints
+from hexmembrane.run.progress import Progress
+from hexmembrane.scene.builder import checkTimeStep
+from hexmembrane.scene.handles import Scene
+
+#: Parts that the pressure's smooth rise is divided into; each is 1 % of the time.
+RAMP_PARTS = 100
+#: Share of the pressure that the ramp begins with: servos hold no stress of 0.
+_FIRST = 0.01
+
+#: Largest inertial number of what counts as quasi-static.
+QUASISTATIC = 1e-3
+
+
+class StageError(RuntimeError):
+	"""A stage that cannot reach its target, or that YADE stopped; a checkpoint of the last sound state is in the folder."""
+
+
+class TriaxialTest:
+	"""A test whose specimen and lateral boundary are in ``O`` (see :func:`hexmembrane.scene.builder.build`).
+
+	Attributes: ``config``, ``out``, ``quiet`` (see below); ``scene`` and ``grains`` (handles), ``stage`` (name), ``rowCount`` (rows of the stage so
+	far), ``lastRow`` (a dict by column of the records), ``stageStart`` (step and time), ``reference`` (what strains count from), ``records``, ``frames``.
+
+	:param config: checked configuration.
+	:param out: existing folder for all files.
+	:param quiet: print nothing.
+	:param facts: a checkpoint's facts to go on from (its state loaded); None: begin.
+	"""
+
+	def __init__(self, config, out, quiet=False, facts=None):
+		self.config, self.out, self.quiet = config, pathlib.Path(out), quiet
+		self.scene = Scene()
+		self.grains = rows.Grains.of(self.scene.grainIds())
+		facts = facts or {}
+		self.stage = facts.get("stage", "generated")
+		self.rowCount = facts.get("rows", 0)
+		self.stageStart = facts.get("begun", {"step": O.iter, "time": O.time})
+		self.frames = Frames(self.out, facts.get("frames", ()))
+		self.records = Records(self.out / "records.csv", facts.get("bytes"))
+		self.reference = rows.Reference(**facts["reference"]) if "reference" in facts else rows.Reference.of(self.scene)
+		self.lastRow = facts.get("last")
+		self._earlier = facts.get("elapsed", 0.0)
+		self._clock = time.monotonic()
+
+	# What both stages share
+
+	def elapsed(self):
+		"""Wall clock of the test so far [s]."""
+		return self._earlier + time.monotonic() - self._clock
+
+	def _enter(self, stage):
+		"""Begin a stage: strains, displacements and energies count from here."""
+		if O.trackEnergy and not O.energy.items():
+			self.advance(1)  # energies are known after a step
+		self.stage, self.rowCount = stage, 0
+		self.stageStart = {"step": O.iter, "time": O.time}
+		self.reference = rows.Reference.of(self.scene)
+		for body in O.bodies:
+			body.state.refPos = body.state.pos
+			body.state.refOri = body.state.ori
+
+	def advance(self, steps):
+		"""Run YADE for a number of steps.
+
+		:raises StageError: YADE stopped before.
+		"""
+		wanted, why = O.iter + steps, None
+		try:
+			O.run(steps, True)
+		except RuntimeError as error:
+			why = str(error)
+		if why or O.iter != wanted:
+			raise StageError(
+				f"{self.stage}.step = {O.iter}: YADE stopped before step {wanted}: {why or 'see its messages above'}; "
+				f"fix: go on from the last checkpoint in '{self.out}', with a smaller numerics.safety, a slower test or what else is said here"
+			)
+
+	def row(self):
+		"""Measure, write and return a row of the records."""
+		self.scene.exportContacts()
+		self.lastRow = rows.row(self.scene, self.grains, self.reference, self.stage, self.elapsed())
+		lost = rows.escaped(self.scene, self.grains)
+		if lost is not None:
+			raise StageError(
+				f"{self.stage}.step = {O.iter}: grain {lost} at {tuple(O.bodies[lost].state.pos)} has left the {self.scene.lateralBoundary.name}; "
+				"fix: a smaller membrane.particleRadius, a smaller numerics.safety or a slower test"
+			)
+		self.records.append(self.lastRow)
+		self.rowCount += 1
+		return self.lastRow
+
+	def checkpoint(self, name=None):
+		"""Save the state (as ``name``.yade.gz, kept; else as this stage's last checkpoint) and go on from the saved state."""
+		old = checkpoints.read(self.out)["state"] if (self.out / "checkpoint.json").is_file() else None
+		state = f"{name or 'checkpoint-' + self.stage + '-' + str(self.rowCount)}.yade.gz"
+		part = self.out / ("part-" + state)
+		O.save(str(part), quiet=True)
+		part.replace(self.out / state)
+		facts = {
+			"stage": self.stage,
+			"rows": self.rowCount,
+			"begun": self.stageStart,
+			"bytes": self.records.position(),
+			"frames": self.frames.written,
+			"reference": vars(self.reference),
+			"last": self.lastRow,
+			"elapsed": round(self.elapsed(), 2),
+		}
+		checkpoints.write(self.out, state, facts)
+		if old and old != state and old.startswith("checkpoint-"):
+			(self.out / old).unlink(missing_ok=True)
+		load(self.out / state)
+		self.scene = Scene()
+		self.scene.guard.checkpoint = str(self.out / state)
+
+	def _show(self, progress, done):
+		row = self.lastRow
+		progress.update(
+			done,
+			strain=f"{100 * row['axial_strain']:.2f} %",
+			q=f"{1e-3 * row['q']:.1f} kPa",
+			porosity=f"{row['porosity']:.4f}",
+			unbalanced=f"{row['unbalanced']:.1e}",
+		)
+
+	# Consolidation
+
+	def consolidate(self):
+		"""Raise confining pressure and axial stress together and smoothly, then wait for rest.
+
+		Ends when the unbalanced force ratio is below its limit and transmitted pressure (main body) and axial stress (platen
+		force over its face) are both within the tolerance of the pressure. Leaves ``consolidated.yade.gz``; the start is a checkpoint.
+
+		:raises StageError: not at rest after maxSteps, the state it reached is the checkpoint; or a servo did not reach its target within
+			timeLimit, the checkpoint is the last one before.
+		"""
+		keys = self.config.consolidation
+		rampTime = keys.rampTime or 30 * self._inertialTime()
+		with Progress("consolidation", self.quiet) as progress:
+			if self.stage == "generated":
+				self._beginConsolidation()
+			self.scene.setTimeLimit(keys.timeLimit)
+			while not (self.rowCount and self._atRest(rampTime)):
+				steps = O.iter - self.stageStart["step"]
+				if steps >= keys.maxSteps:
+					self.checkpoint()
+					raise StageError(self._restless(steps))
+				self._rampedChunk(rampTime, min(self.config.output.consolidationSteps, keys.maxSteps - steps))
+				self.row()
+				self._show(progress, self._consolidationDone(rampTime))
+				checkTimeStep(self.config, self.scene, progress.say)
+				self._maybeCheckpoint()
+			progress.update(1.0, porosity=f"{self.lastRow['porosity']:.4f}", coordination=f"{self.lastRow['coordination']:.2f}")
+			progress.say(
+				f"consolidated after {O.iter - self.stageStart['step']} steps: unbalanced {self.lastRow['unbalanced']:.2e}, "
+				f"transmitted {1e-3 * self.lastRow['sigma3_transmitted_group3']:.2f} kPa of {1e-3 * keys.pressure:g} kPa"
+			)
+		self.beginShear()
+		self.checkpoint("consolidated")
+
+	def _beginConsolidation(self):
+		keys = self.config.consolidation
+		self.stage = "consolidation"
+		self.scene.setPressure(_FIRST * keys.pressure)
+		speed = QUASISTATIC / self._inertialTime()
+		self.scene.topDrive.maxVelocity = speed * self.reference.height
+		self.scene.lateralBoundary.setMaxVelocity(self.config.wall.maxVelocity or speed * self.reference.radius)
+		if keys.friction is not None:
+			self.scene.setFriction(keys.friction)
+		self._enter("consolidation")
+		self.checkpoint()
+
+	def _inertialTime(self):
+		"""d sqrt(rho/sigma3) [s]: a strain rate times this is the inertial number."""
+		return self.grains.meanDiameter * math.sqrt(self.grains.density / self.config.consolidation.pressure)
+
+	def _rampedChunk(self, rampTime, steps):
+		"""Run ``steps`` steps, the pressure following its smooth rise P (1 - cos(pi t/T))/2, never below _FIRST of P."""
+		target = self.config.consolidation.pressure
+		end = O.iter + steps
+		while O.iter < end:
+			share = min(1.0, (O.time - self.stageStart["time"]) / rampTime)
+			self.scene.setPressure(target * max(_FIRST, (1 - math.cos(math.pi * share)) / 2))
+			part = end - O.iter
+			if share < 1:
+				part = min(part, max(1, math.ceil(rampTime / (RAMP_PARTS * O.dt))))
+			self.advance(part)
+
+	def _errors(self):
+		"""Relative distances of transmitted pressure and axial stress from the pressure."""
+		target = self.config.consolidation.pressure
+		return {
+			"transmitted pressure": abs(self.lastRow["sigma3_transmitted_group3"] / target - 1),
+			"axial stress": abs(self.lastRow["platen_force_top"] / (target * self.scene.endArea()) - 1),
+		}
+
+	def _tolerance(self):
+		"""The configured one, or what the lateral boundary can hold: without a closed loop the membrane's own tension is on the soil too."""
+		tolerance = self.config.consolidation.tolerance
+		if tolerance is not None:
+			return tolerance
+		return 0.05 if self.config.boundary == "membrane" and self.config.membrane.pressureGain == 0 else 0.005
+
+	def _atRest(self, rampTime):
+		keys = self.config.consolidation
+		ramped = O.time - self.stageStart["time"] >= rampTime and self.lastRow["sigma3_target"] == keys.pressure
+		return ramped and self.lastRow["unbalanced"] < keys.unbalanced and max(self._errors().values()) < self._tolerance()
+
+	def _consolidationDone(self, rampTime):
+		"""Share of the consolidation done: half for the ramp, half for the decades of unbalanced force."""
+		share = (O.time - self.stageStart["time"]) / rampTime
+		if share < 1:
+			return share / 2
+		decades = math.log10(max(self.lastRow["unbalanced"], 1e-30) / self.config.consolidation.unbalanced)
+		return min(0.99, 0.5 + 0.5 * (1 - min(1.0, max(0.0, decades / 3))))
+
+	def _restless(self, steps):
+		keys = self.config.consolidation
+		errors = ", ".join(f"{name} off by {100 * error:.2g} %" for name, error in self._errors().items())
+		return (
+			f"consolidation.maxSteps = {keys.maxSteps}: not at rest after {steps} steps (unbalanced {self.lastRow['unbalanced']:.2e}, "
+			f"limit {keys.unbalanced:g}; {errors}, tolerance {100 * self._tolerance():g} %); its state is the checkpoint in "
+			f"'{self.out}'; fix: allow more steps, a higher limit or tolerance, or more numerics.damping"
+		)
+
+	# Shear
+
+	def beginShear(self):
+		"""Strains count from here and the platens are set to their velocities."""
+		self._enter("shear")
+		self.scene.setFriction(self.config.specimen.friction)
+		self.scene.setTimeLimit(None)
+		keys = self.config.shear
+		share = {"top": (0.0, 1.0), "both": (0.5, 0.5)}[keys.moving]
+		for drive, part in zip((self.scene.bottomDrive, self.scene.topDrive), share):
+			drive.mode = "velocity"
+			drive.velocity = part * keys.velocity
+			drive.rampTime = 2 * keys.rampStrain * self.reference.height / keys.velocity
+
+	def strain(self):
+		"""Axial strain since the stage began, compression positive."""
+		bottom, top = self.scene.faces()
+		return 1 - (top - bottom) / self.reference.height
+
+	def shear(self):
+		"""Shear from the consolidated state to the wished strain, one row at each equal part of it; leaves ``sheared.yade.gz``.
+
+		:raises StageError: the platens do not move as asked.
+		"""
+		keys = self.config.shear
+		total = self.config.output.records
+		with Progress("shear", self.quiet) as progress:
+			self._announceShear(progress)
+			if self.rowCount == 0:
+				self.advance(1)  # forces are not in a saved state, and a row needs them
+				self.row()
+				self._frame()
+			while self.rowCount <= total:
+				self._until(keys.strain * self.rowCount / total)
+				self.row()
+				self._show(progress, (self.rowCount - 1) / total)
+				every = self.config.output.vtkEvery
+				if every and ((self.rowCount - 1) % every == 0 or self.rowCount > total):
+					self._frame()
+				if self._checkpointDue():
+					checkTimeStep(self.config, self.scene, progress.say)
+				self._maybeCheckpoint()
+			self._report(progress)
+		self.checkpoint("sheared")
+
+	def _until(self, strain):
+		"""Run to an axial strain, to within one step's travel."""
+		step = self.config.shear.velocity * O.dt / self.reference.height
+		limit = O.iter + 10 * self._stepsOfShear()
+		while (missing := strain - self.strain()) > 0.5 * step:
+			if O.iter > limit:
+				raise StageError(f"shear.strain = {self.strain():.4g}: the platens do not move as asked; fix: see the engines of the scene")
+			self.advance(max(1, round(missing / step)))
+
+	def _stepsOfShear(self):
+		return math.ceil((self.config.shear.strain + self.config.shear.rampStrain) * self.reference.height / (self.config.shear.velocity * O.dt))
+
+	def _announceShear(self, progress):
+		keys = self.config.shear
+		inertial = keys.velocity / self.reference.height * self._inertialTime()
+		progress.say(
+			f"shear at {keys.velocity:g} m/s to {100 * keys.strain:g} %: about {self._stepsOfShear()} steps, inertial number {inertial:.2e}"
+			+ ("" if inertial <= QUASISTATIC else f"; WARNING: above {QUASISTATIC:g} this is not quasi-static; fix: lower shear.velocity")
+		)
+
+	def _report(self, progress):
+		row = self.lastRow
+		progress.say(
+			f"sheared to {100 * row['axial_strain']:.2f} %: q {1e-3 * row['q']:.1f} kPa, volumetric strain "
+			f"{100 * row['volumetric_strain_radius']:.2f} % (Eq. 6) and {100 * row['volumetric_strain_volume']:.2f} % (volume), "
+			f"transmitted {1e-3 * row['sigma3_transmitted_group3']:.2f} kPa, broken bonds {row['bonds_broken']}"
+			+ (f", energy balance off by {100 * row['energy_error']:.2g} %" if O.trackEnergy else "")
+		)
+
+	def _frame(self):
+		if self.config.output.vtkEvery:
+			self.frames.write(self.scene, self.grains, self.reference.radius)
+
+	def _checkpointDue(self):
+		every = self.config.output.checkpointEvery
+		return every > 0 and self.rowCount % every == 0
+
+	def _maybeCheckpoint(self):
+		if self._checkpointDue():
+			self.checkpoint()
+
+
+def load(path):
+	"""Put a saved state into ``O``.
+
+	:raises StageError: no such file, or YADE cannot read it.
+	"""
+	path = pathlib.Path(path)
+	if not path.is_file():
+		raise StageError(f"state = '{path}': there is no such file; fix: correct the path")
+	try:
+		O.load(str(path), quiet=True)
+	except RuntimeError as error:
+		raise StageError(f"state = '{path}': YADE cannot read it ({error}); fix: give a state saved by the same version") from None

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Builds YADE's scene of a test: materials, grains, lateral boundary, end platens and the list of engines of its tier; sets its time step."""
+
+import math
+
+import yade
+from yade import O, utils
+
+from hexmembrane.scene import timestep
+from hexmembrane.scene.boundaries import CLASSES
+from hexmembrane.scene.flexible_membrane import MASK
+from hexmembrane.scene.handles import Scene, compactLoop
+from hexmembrane.scene.platens import platen
+
+
+def _wantEmpty():
+	if len(O.bodies):
+		raise RuntimeError(f"O.bodies = {len(O.bodies)} bodies: an empty scene is needed; fix: O.reset() first, or save the scene and start anew")
+
+
+def _materials(config):
+	grain, platens = config.specimen, config.platens
+	common = {"emod": grain.emod, "kratio": grain.kratio, "density": grain.density}
+	O.materials.append(yade.LinearMat(friction=grain.friction, rollingFriction=grain.rollingFriction, label="grain", **common))
+	O.materials.append(yade.LinearMat(friction=platens.friction, label="platen", **common))
+
+
+def _platens(config, parts):
+	"""Append the two platens; their ids, bottom first."""
+	travel = (config.shear.strain + 0.1) * config.specimen.height
+	thickness = config.platens.thickness or parts.overhang + travel
+	ids = []
+	for z, facing in ((0.0, 1), (config.specimen.height, -1)):
+		ids.append(O.bodies.append(platen((0, 0, z), parts.platenRadius, thickness, facing=facing, material=O.materials["platen"])))
+	return ids
+
+
+def _engines(config, inner, smallest):
+	"""The list of engines of the configuration's tier round those of lateral boundary and end platens, which both tiers share.
+
+	:param smallest: radius of the smallest sphere [m].
+	"""
+	numerics = config.numerics
+	if config.tier == "compact":
+		loop = yade.CompactLoop(engines=inner, damping=numerics.damping, substeps=numerics.substeps, skin=numerics.skin * smallest)
+		return [yade.ForceResetter(), loop, yade.RunawayGuard(iterPeriod=1)]
+	return [
+		yade.ForceResetter(),
+		yade.MemoryOrder(),
+		yade.InsertionSortCollider(
+			[yade.Bo1_Sphere_Aabb(), yade.Bo1_Platen_Aabb(), yade.Bo1_CylinderWall_Aabb()],
+			verletDist=numerics.verlet * smallest,
+			avoidSelfInteractionMask=MASK,
+		),
+		yade.InteractionLoop(
+			[
+				yade.Ig2_Sphere_Sphere_LinearScGeom(avoidGranularRatcheting=False),
+				yade.Ig2_Platen_Sphere_ScGeom(),
+				yade.Ig2_CylinderWall_Sphere_ScGeom(),
+			],
+			[yade.Ip2_LinearMat_LinearMat_LinearPhys()],
+			[yade.Law2_ScGeom_LinearPhys_Linear()],
+		),
+		*inner,
+		yade.NewtonIntegrator(damping=numerics.damping),
+		yade.RunawayGuard(),
+	]
+
+
+def setTier(config):
+	"""Bring the scene in ``O``, one of :func:`build`, to the configuration's tier; contacts keep their forces and history.
+
+	From the compact tier one step is taken, which writes the contacts.
+	"""
+	loop = compactLoop()
+	if (loop is not None) == (config.tier == "compact"):
+		return
+	names = ("MembraneBonds", "MembranePressure", "MembraneRadialServo", "MembraneORings", "RadialWallServo", "PlatenDrive")
+	if loop:
+		loop.substeps = 1
+		O.step()
+		loop.exportContacts()
+	inner = list(loop.engines) if loop else [engine for engine in O.engines if type(engine).__name__ in names]
+	radii = [body.shape.radius for body in O.bodies if isinstance(body.shape, yade.Sphere)]
+	O.engines = _engines(config, inner, min(radii))
+
+
+def build(config, packing, say=print):
+	"""Fill YADE's empty scene with the grains of ``packing``, lateral boundary, platens and engines, at the pressure 0; the handles.
+
+	:param config: a checked configuration.
+	:param packing: a packing, see :class:`hexmembrane.scene.packing_file.Packing`.
+	:param say: takes lines of the log.
+	:raises RuntimeError: there are bodies in the scene.
+	:raises ValueError: the membrane is too coarse for the grains, and such.
+	"""
+	_wantEmpty()
+	_materials(config)
+	O.bodies.append([utils.sphere(tuple(c), r, material="grain") for c, r in zip(packing.centres.tolist(), packing.radii.tolist())])
+	parts = CLASSES[config.boundary].make(config, packing)
+	bottom, top = _platens(config, parts)
+	smallest = float(packing.radii.min())
+	before, after = parts.engines(bottom, top)
+	drives = [
+		yade.PlatenDrive(platen=bottom, direction=(0, 0, 1), mode="velocity", velocity=0.0),
+		yade.PlatenDrive(platen=top, direction=(0, 0, -1), mode="stress", stress=0.0, area=math.pi * packing.radius**2),
+	]
+	O.engines = _engines(config, [*before, *drives, *after], min(smallest, parts.smallestRadius))
+	O.trackEnergy = config.output.energy
+	scene = Scene()
+	_setTimeStep(config, timestep.grainStep(config.specimen, smallest), parts, say)
+	for line in parts.log:
+		say(line)
+	level = timestep.stiffnessLevel(config.specimen.emod, config.consolidation.pressure)
+	say(
+		f"grains: {len(packing.radii)}, kn/(p d) = {level:.4g} at {1e-3 * config.consolidation.pressure:g} kPa"
+		+ ("" if level >= 300 else "; WARNING: below 300 the grains are soft and overlaps are not small; fix: raise specimen.emod")
+	)
+	return scene
+
+
+def _setTimeStep(config, grains, parts, say):
+	"""Set O.dt; a configured one above the critical of grains or boundary is an error."""
+	critical = min(grains, parts.criticalStep)
+	asked = config.numerics.dt
+	if asked is not None and asked > critical:
+		raise ValueError(f"numerics.dt = {asked:g} s: is above the critical time step {critical:.4g} s; fix: lower it or leave it out")
+	O.dt = asked or config.numerics.safety * critical
+	boundary = f", {config.boundary} {parts.criticalStep:.4g} s" if math.isfinite(parts.criticalStep) else ""
+	say(f"time step {O.dt:.4g} s; critical: grains {grains:.4g} s{boundary}")
+
+
+def checkTimeStep(config, scene, say):
+	"""Lower O.dt if the contacts that have formed ask for it by 10 % or more; an explicit one above the critical is an error."""
+	critical = scene.criticalTimeStep()
+	if config.numerics.dt is not None and config.numerics.dt > critical:
+		raise ValueError(
+			f"numerics.dt = {config.numerics.dt:g} s: is above the critical time step {critical:.4g} s of the present contacts; "
+			"fix: lower it or leave it out"
+		)
+	allowed = config.numerics.safety * critical
+	if config.numerics.dt is None and O.dt > 1.1 * allowed:
+		say(f"time step lowered from {O.dt:.4g} s to {allowed:.4g} s: {config.numerics.safety:g} of the critical one of the present contacts")
+		O.dt = allowed

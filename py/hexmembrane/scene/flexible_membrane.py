@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The flexible membrane as a test's lateral boundary.
+
+Masks: grains and platens carry bit 1, membrane spheres bits 1 and 2, and the collider leaves out pairs that share bit 2: the
+membrane meets grains and platens but not itself.
+"""
+
+import math
+
+import numpy
+import yade
+from scipy.spatial import cKDTree
+from yade import O
+
+from hexmembrane.scene import geometry, timestep
+from hexmembrane.scene.lateral_boundary import BoundaryParts, LateralBoundary, Surface, singleEngine
+from hexmembrane.scene.membrane_loads import endHeights, membraneLoads
+
+#: Bit of the membrane's spheres in a body's mask.
+MASK = 2
+
+
+def platenRows(wished, particleRadius, smallest):
+	"""Rows beside each platen: as wished, or as many as stand beside the smallest grain (rows are sqrt(3) R apart), 2 at least.
+
+	A fine membrane leaves the O-ring's radius over about a grain; rows that all lie in this neck do not reach the soil, however hard they are pressed.
+
+	:param particleRadius: R [m].
+	:param smallest: the smallest grain's radius [m].
+	"""
+	if wished is not None:
+		return wished
+	return max(2, math.ceil(2 * smallest / (math.sqrt(3) * particleRadius)))
+
+
+def generate(config, particleRadius, smallest):
+	"""A membrane as configured, its density not scaled, generated with a material of its own.
+
+	:param particleRadius: wished radius of its spheres [m].
+	:param smallest: smallest grain's radius [m].
+	:raises ValueError: it is too coarse for the specimen or the grains, and such.
+	"""
+	keys, grain = config.membrane, config.specimen
+	O.materials.append(yade.LinearMat(emod=grain.emod, kratio=grain.kratio, friction=0, density=keys.density, label="membrane"))
+	membrane = yade.HexMembrane(
+		specimenRadius=grain.radius,
+		specimenHeight=grain.height,
+		particleRadius=particleRadius,
+		placement=keys.placement,
+		oRingRows=keys.oRingRows,
+		platenRows=platenRows(keys.platenRows, particleRadius, smallest),
+		density=keys.density,
+		material=O.materials["membrane"],
+		smallestGrain=smallest,
+		mask=1 | MASK,
+		rotations=not keys.centralBonds,
+	)
+	membrane.generate()
+	return membrane
+
+
+def scaleDensity(membrane, factor):
+	"""Multiply the mass of a generated membrane's spheres, which lengthens its critical time step by the root of it."""
+	if factor == 1:
+		return
+	membrane.density *= factor
+	membrane.material.density = membrane.density
+	for state in (O.bodies[i].state for i in membrane.ids):
+		state.mass *= factor
+		state.inertia *= factor
+
+
+class FlexibleMembrane(LateralBoundary):
+	"""Handles: ``membrane``, ``bonds``, ``pressureEngine`` (MembranePressure), ``radialServo`` (MembraneRadialServo), ``oRings``."""
+
+	name = "membrane"
+
+	def __init__(self, engines):
+		self.bonds = singleEngine(engines, "MembraneBonds")
+		self.pressureEngine = singleEngine(engines, "MembranePressure")
+		self.radialServo = singleEngine(engines, "MembraneRadialServo")
+		self.oRings = singleEngine(engines, "MembraneORings")
+		self.membrane = self.bonds.membrane
+
+	@classmethod
+	def make(cls, config, packing):
+		keys = config.membrane
+		smallest, largest = float(packing.radii.min()), float(packing.radii.max())
+		membrane = generate(config, keys.particleRadius or keys.sizeRatio * smallest, smallest)
+		bonds = yade.MembraneBonds(
+			membrane=membrane, young=keys.young, thickness=keys.thickness, poisson=keys.poisson, tensionOnly=keys.tensionOnly
+		)
+		unscaled = timestep.membraneStep(config.specimen, keys.density, largest, membrane.sphereRadius, bonds.criticalTimeStep())
+		scaling = timestep.densityScaling(keys.densityScaling, timestep.grainStep(config.specimen, smallest), unscaled)
+		scaleDensity(membrane, scaling)
+
+		def engines(bottom, top):
+			before = [
+				bonds,
+				yade.MembranePressure(membrane=membrane, pressure=0.0, surface=keys.surface, gain=keys.pressureGain),
+				yade.MembraneRadialServo(membrane=membrane, pressure=0.0, areaRule=keys.areaRule, gain=keys.gain),
+			]
+			return before, [yade.MembraneORings(membrane=membrane, mode=keys.oRings, bottomPlaten=bottom, topPlaten=top)]
+
+		return BoundaryParts(
+			engines=engines,
+			platenRadius=packing.radius,
+			overhang=membrane.rings * membrane.ringSpacing - config.specimen.height,
+			smallestRadius=membrane.sphereRadius,
+			criticalStep=math.sqrt(scaling) * unscaled,
+			log=[
+				cls._description(keys, membrane, smallest),
+				*cls._scaled(config, packing, membrane, scaling, unscaled),
+				*cls._warning(config, packing),
+			],
+		)
+
+	@staticmethod
+	def _description(keys, membrane, smallest):
+		radius = membrane.sphereRadius
+		return (
+			f"membrane: {len(membrane.ids)} spheres of R = {1e3 * radius:.4g} mm in {membrane.rings} rings of {membrane.perRing}, "
+			f"R/r = {radius / smallest:.3g} with r = {1e3 * smallest:.4g} mm the smallest grain's radius; "
+			f"E t = {keys.young * keys.thickness:.4g} N/m, nu = {keys.poisson:.3g}"
+		)
+
+	@staticmethod
+	def _scaled(config, packing, membrane, scaling, unscaled):
+		if scaling == 1:
+			return []
+		mass = len(membrane.ids) * timestep.sphereMass(membrane.sphereRadius, scaling * config.membrane.density)
+		share = mass / timestep.sphereMass(packing.radii, config.specimen.density).sum()
+		return [
+			f"membrane's density times {scaling:.3g}: its critical step is {math.sqrt(scaling) * unscaled:.4g} s instead of {unscaled:.4g} s, its mass "
+			f"{100 * share:.2g} % of the grains' instead of {100 * share / scaling:.2g} %; what that does is the column membrane_unbalanced"
+		]
+
+	@staticmethod
+	def _warning(config, packing):
+		meanRadius = float((packing.radii**3).mean()) ** (1 / 3)
+		sag = config.consolidation.pressure * meanRadius / (config.membrane.young * config.membrane.thickness)
+		if sag <= 0.5:
+			return []
+		return [
+			f"WARNING: pressure times grain radius is {sag:.2g} of E t: the membrane will sag deep between the grains and may fold; "
+			"fix: raise membrane.young or membrane.thickness"
+		]
+
+	@property
+	def pressure(self):
+		return self.pressureEngine.pressure
+
+	@property
+	def appliedPressure(self):
+		return self.pressureEngine.applied
+
+	def setPressure(self, pressure):
+		self.pressureEngine.pressure = pressure
+		self.radialServo.pressure = pressure
+
+	def meanRadius(self):
+		"""Mean radius [m] of the inner surface for Eq. 6: over the particles of groups 2 and 3, each about its ring's centroid.
+
+		The same rings all along, so that none enters or leaves the mean when a platen passes it.
+		"""
+		return self.membrane.meanRadius(*endHeights(self.membrane))
+
+	def volume(self, bottom, top):
+		return self.membrane.enclosedVolume(bottom, top)
+
+	def endArea(self, face):
+		return face
+
+	def pressedArea(self, bottom, top):
+		return self.pressureEngine.area
+
+	def transmittedPressure(self, group):
+		return self.membrane.transmittedPressure(group)
+
+	def brokenBonds(self):
+		return self.bonds.brokenCount
+
+	def unbalanced(self):
+		"""Mean resultant force on the particles of groups 2 and 3, their mass times acceleration, over the confining pressure on a particle's area."""
+		membrane, pressure = self.membrane, self.pressure
+		free = [i for i, group in zip(membrane.ids, membrane.groups) if group != 1]
+		force = numpy.array([tuple(O.forces.f(i)) for i in free])
+		particle = 2 * math.sqrt(3) * membrane.sphereRadius**2
+		return float(numpy.linalg.norm(force, axis=1).mean()) / (pressure * particle) if pressure > 0 else 0.0
+
+	def ownLoads(self, bottom, top):
+		return membraneLoads(self.membrane, self.bonds, self.pressureEngine, bottom, top)
+
+	def outside(self, points):
+		"""Which points are outside.
+
+		A point on the inner side of the membrane particle nearest to it, by the surface's normal there, is inside; the few others, where
+		the membrane is folded, are looked at by :func:`hexmembrane.scene.geometry.insideTube`.
+		"""
+		x = numpy.array(self.membrane.positions)
+		triangles = numpy.array([tuple(t) for t in self.membrane.triangles])
+		nearest = cKDTree(x).query(points)[1]
+		lost = ((points - x[nearest]) * geometry.normals(x, triangles)[nearest]).sum(axis=1) >= 0
+		for k in numpy.flatnonzero(lost):
+			lost[k] = not geometry.insideTube(points[k], x, triangles, self.membrane.perRing)
+		return lost
+
+	def addFrequencySquare(self, square):
+		square[self.membrane.ids] += (2 / self.bonds.criticalTimeStep()) ** 2
+
+	def surface(self, startRadius):
+		"""A surface through the centres; arrays: :mod:`hexmembrane.output.vtk`."""
+		membrane = self.membrane
+		x, v, u = geometry.motions(O.bodies[i].state for i in membrane.ids)
+		triangles = numpy.array([tuple(t) for t in membrane.triangles])
+		group = numpy.array(membrane.groups, dtype=numpy.int32)
+		beside = self.radialServo.factor * self.radialServo.pressure
+		points = {
+			"id": numpy.array(membrane.ids),
+			"group": group,
+			"radius": numpy.full(len(x), membrane.sphereRadius),
+			"velocity": v,
+			"displacement": u,
+			"normal_displacement": (u * geometry.normals(x - u, triangles)).sum(axis=1),
+			"pressure": numpy.where(group == 1, 0.0, numpy.where(group == 2, beside, self.appliedPressure)),
+		}
+		return Surface(x, triangles, points, {"group": group[triangles].min(axis=1)})

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Bodies' states as arrays, and the geometry of triangulated surfaces. Uses nothing of YADE."""
+
+import math
+
+import numpy
+
+
+def motions(states):
+	"""Positions, velocities and displacements since the stage began, (N, 3) each, of bodies' states."""
+	states = list(states)
+	x = numpy.array([tuple(s.pos) for s in states])
+	return x, numpy.array([tuple(s.vel) for s in states]), x - numpy.array([tuple(s.refPos) for s in states])
+
+
+def normals(points, triangles):
+	"""Unit normals at the points of a triangulated surface, area-weighted; zero where a point has no triangle."""
+	a, b, c = (points[triangles[:, k]] for k in range(3))
+	cross = numpy.cross(b - a, c - a)
+	total = numpy.zeros_like(points)
+	for k in range(3):
+		numpy.add.at(total, triangles[:, k], cross)
+	length = numpy.linalg.norm(total, axis=1, keepdims=True)
+	return numpy.divide(total, length, out=numpy.zeros_like(total), where=length > 0)
+
+
+def insideTube(point, x, triangles, perRing):
+	"""Whether a point is inside a tube of rings, its ends closed by fans, however much the tube is folded.
+
+	By the solid angles of the triangles, 2 atan2(a.(b x c), abc + (a.b)c + (b.c)a + (c.a)b), whose sum is 4 pi inside and 0 outside
+	an outward oriented surface (A. Van Oosterom, J. Strackee, The solid angle of a plane triangle, IEEE Trans. Biomed. Eng. 30, 1983).
+
+	:param x: (rings * perRing, 3) points from the lower ring to the upper one.
+	:param triangles: (M, 3), outward.
+	"""
+	ring = numpy.arange(perRing)
+	after = numpy.roll(ring, -1)
+	last, n = len(x) - perRing, len(x)
+	points = numpy.vstack([x, x[:perRing].mean(axis=0), x[last:].mean(axis=0)]) - point
+	lower = numpy.column_stack([after, ring, numpy.full(perRing, n)])
+	upper = numpy.column_stack([last + ring, last + after, numpy.full(perRing, n + 1)])
+	a, b, c = (points[numpy.vstack([triangles, lower, upper])[:, k]] for k in range(3))
+	la, lb, lc = (numpy.linalg.norm(v, axis=1) for v in (a, b, c))
+	dots = [(p * q).sum(axis=1) * r for p, q, r in ((a, b, lc), (b, c, la), (c, a, lb))]
+	angles = 2 * numpy.arctan2((a * numpy.cross(b, c)).sum(axis=1), la * lb * lc + sum(dots))
+	return float(angles.sum()) > 2 * math.pi

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Handles to the parts of a test's scene in ``O``, found by their types."""
+
+import math
+
+import numpy
+import yade
+from yade import O
+
+from hexmembrane.scene import boundaries, timestep
+from hexmembrane.scene.flexible_membrane import MASK
+from hexmembrane.scene.lateral_boundary import singleEngine
+
+
+class Scene:
+	"""Handles to the parts of the scene in ``O``; make a new one after ``O.load``.
+
+	Attributes: ``lateralBoundary`` (a :class:`hexmembrane.scene.lateral_boundary.LateralBoundary`), ``guard`` (RunawayGuard),
+	``bottomDrive`` and ``topDrive`` (the PlatenDrive of each end platen), ``loop`` (the compact tier's engine, None in the reference tier).
+
+	:raises RuntimeError: the scene in ``O`` is not one of :func:`hexmembrane.scene.builder.build`.
+	"""
+
+	def __init__(self):
+		self.loop = compactLoop()
+		byType = {}
+		for engine in [*O.engines, *(self.loop.engines if self.loop else ())]:
+			byType.setdefault(type(engine).__name__, []).append(engine)
+		self.lateralBoundary = boundaries.ofEngines(byType)
+		self.guard = singleEngine(byType, "RunawayGuard")
+		drives = byType.get("PlatenDrive", ())
+		if len(drives) != 2:
+			raise RuntimeError(f"Scene.engines = {len(drives)} PlatenDrive: 2 expected; fix: load a state saved by this test")
+		self.bottomDrive, self.topDrive = sorted(drives, key=lambda drive: -drive.direction[2])
+		self._half = [O.bodies[drive.platen].shape.height / 2 for drive in (self.bottomDrive, self.topDrive)]
+
+	def faces(self):
+		"""Heights of the bottom and the top platen's face [m]."""
+		bottom, top = (O.bodies[drive.platen].state.pos[2] for drive in (self.bottomDrive, self.topDrive))
+		return bottom + self._half[0], top - self._half[1]
+
+	def endArea(self):
+		"""Area of the specimen's ends [m2], that the axial stress acts on: the platens' faces, or what a rigid wall leaves of them."""
+		return self.lateralBoundary.endArea(math.pi * O.bodies[self.topDrive.platen].shape.radius ** 2)
+
+	def approachSpeed(self):
+		"""Speed at which the faces approach each other [m/s], compression positive."""
+		return O.bodies[self.bottomDrive.platen].state.vel[2] - O.bodies[self.topDrive.platen].state.vel[2]
+
+	def grainIds(self):
+		"""Ids of the grains: spheres without the membrane's bit."""
+		return [b.id for b in O.bodies if isinstance(b.shape, yade.Sphere) and not b.mask & MASK]
+
+	def exportContacts(self):
+		"""See to it that ``O.interactions`` holds the contacts of the last step, in either tier."""
+		if self.loop:
+			self.loop.exportContacts()
+
+	def criticalTimeStep(self):
+		"""Critical time step [s] of central differences, 2/omega, for the contacts and bonds that there are now.
+
+		omega is the highest frequency of the linearised system, rotations included, with every contact that can carry shear taken as
+		sticking. Forces' own stiffness (a force times a rotation of its line of action) is left out in both tiers.
+
+		* Compact tier: 2/omega itself, by power iteration. The iteration ends at a relative change of 1e-4 and comes from above.
+		* Reference tier: a lower bound of 2/omega, see :func:`hexmembrane.scene.timestep.contactStep`.
+		"""
+		if self.loop:
+			return self.loop.criticalTimeStep()
+		square = numpy.zeros(len(O.bodies))
+		self.lateralBoundary.addFrequencySquare(square)
+		return timestep.contactStep(*_springs(), *_masses(), square)
+
+	def setFriction(self, coefficient):
+		"""Give the grains, and the contacts that they have, a coefficient of friction; the lesser of two materials acts."""
+		O.materials["grain"].friction = coefficient
+		for contact in O.interactions:
+			contact.phys.tangensOfFrictionAngle = min(O.bodies[i].material.friction for i in (contact.id1, contact.id2))
+
+	def setPressure(self, pressure):
+		"""Give the lateral boundary and the top platen the confining pressure [Pa]."""
+		self.lateralBoundary.setPressure(pressure)
+		self.topDrive.stress = pressure
+		# A new target would start the platen's time limit anew: a wall that moves by less than 0.05 % of its radius makes none.
+		if abs(self.topDrive.area / self.endArea() - 1) > 1e-3:
+			self.topDrive.area = self.endArea()
+
+	def setTimeLimit(self, limit):
+		"""Time [s] that each servo has to reach its target once, none without."""
+		limit = math.nan if limit is None else limit
+		self.topDrive.timeLimit = limit
+		self.lateralBoundary.setTimeLimit(limit)
+
+
+def compactLoop():
+	"""The compact tier's engine in ``O``, None in the reference tier."""
+	return next((engine for engine in O.engines if isinstance(engine, yade.CompactLoop)), None)
+
+
+def _springs():
+	"""The contacts in ``O`` as :func:`hexmembrane.scene.timestep.contactStep` takes them: pairs, normals, stiffness, arms."""
+	radii = [b.shape.radius if isinstance(b.shape, yade.Sphere) else 0.0 for b in O.bodies]
+	pairs, normals, stiffness = [], [], []
+	for contact in O.interactions:
+		phys = contact.phys
+		shear = phys.ks if phys.tangensOfFrictionAngle > 0 or phys.bonded else 0.0
+		pairs.append((contact.id1, contact.id2))
+		normals.append(tuple(contact.geom.normal))
+		stiffness.append((phys.kn, shear, phys.kr))
+	pairs = numpy.array(pairs, dtype=int).reshape(-1, 2)
+	return pairs, numpy.array(normals).reshape(-1, 3), numpy.array(stiffness).reshape(-1, 3), numpy.array(radii)[pairs]
+
+
+def _masses():
+	"""Mass and moment of inertia of each body, inf for what does not move or turn."""
+	mass, inertia = [], []
+	for body in O.bodies:
+		blocked = set(body.state.blockedDOFs) if body.dynamic else set("xyzXYZ")
+		mass.append(math.inf if set("xyz") <= blocked else body.state.mass)
+		inertia.append(math.inf if set("XYZ") <= blocked else min(body.state.inertia))
+	return numpy.array(mass), numpy.array(inertia)

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a flexible membrane itself carries, read from the forces of its bonds and of its pressure.
+
+What follows from it for the stress of the soil: :mod:`hexmembrane.measure.correction`.
+"""
+
+import dataclasses
+
+import numpy
+
+
+@dataclasses.dataclass
+class MembraneLoads:
+	"""Loads in the membrane; all 0 where there is none.
+
+	:param axialPush: P, axial parts of the confining pressure's forces towards mid-height, mean of both halves [N].
+	:param axialPullMiddle: T_mid, axial pull of the membrane through the plane at mid-height, tension positive [N].
+	:param axialPullEnd: T_end, the same just inside the O-ring rows, mean of both ends [N].
+	:param radialPressure: the bonds' forces towards the axis over the inner area of the main body, inwards positive [Pa].
+	"""
+
+	axialPush: float = 0.0
+	axialPullMiddle: float = 0.0
+	axialPullEnd: float = 0.0
+	radialPressure: float = 0.0
+
+
+def endHeights(membrane):
+	"""Heights [m] of the planes midway between the innermost O-ring row and the row inside it, at the lower and the upper end."""
+	rows = numpy.array(membrane.positions)[:, 2].reshape(membrane.rings, membrane.perRing).mean(axis=1)
+	k = membrane.oRingRows
+	return 0.5 * float(rows[k - 1] + rows[k]), 0.5 * float(rows[-k] + rows[-k - 1])
+
+
+def axialPush(z, force, middle):
+	"""P [N]: axial parts of applied forces towards mid-height, mean of both halves.
+
+	:param z: heights of the loaded points [m].
+	:param force: axial parts of the forces on them [N].
+	:param middle: mid-height [m].
+	"""
+	return 0.5 * float(force[z < middle].sum() - force[z >= middle].sum())
+
+
+def membraneLoads(membrane, bonds, pressureEngine, bottom, top):
+	"""The :class:`MembraneLoads` of the last step.
+
+	:param membrane: a HexMembrane with O-ring rows.
+	:param bonds: its MembraneBonds, a step run.
+	:param pressureEngine: its MembranePressure.
+	:param bottom: height of the bottom platen's face [m].
+	:param top: height of the top platen's face [m].
+	"""
+	middle = 0.5 * (bottom + top)
+	applied = numpy.array([force[2] for force in pressureEngine.forces()])
+	return MembraneLoads(
+		axialPush=axialPush(numpy.array(membrane.positions)[:, 2], applied, middle),
+		axialPullMiddle=bonds.axialTension(middle),
+		axialPullEnd=sum(bonds.axialTension(z) for z in endHeights(membrane)) / 2,
+		radialPressure=bonds.radialShare(3),
+	)

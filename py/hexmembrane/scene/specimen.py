@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The grains of a test: from a gradation through CylinderPacking, or from a packing file."""
+
+import math
+import pathlib
+
+import yade
+
+from hexmembrane.configuration import ConfigError
+from hexmembrane.scene import packing_file
+from hexmembrane.scene.gradation import Gradation
+
+#: Spheres of a membrane's ring at least, as HexMembrane wants it.
+_MIN_PER_RING = 6
+
+
+def soilRadius(config):
+	"""Radius [m] of the cylinder that the grains are packed into, whatever the lateral boundary: the inner surface of the membrane as generated.
+
+	With ``placement: outside`` that is the specimen's radius. With ``centred``, n = round(pi/asin(R/Rs)) spheres of radius R close a ring of
+	the centre radius Rc = R/sin(pi/n) about the specimen's radius Rs, and the inner surface has Rc - R.
+
+	:raises ConfigError: the membrane's spheres are too coarse to close a ring.
+	"""
+	radius, particleRadius = config.specimen.radius, config.membrane.particleRadius
+	if config.membrane.placement == "outside":
+		return radius
+	perRing = math.floor(math.pi / math.asin(particleRadius / radius) + 0.5) if particleRadius < radius else 0
+	if perRing < _MIN_PER_RING:
+		raise ConfigError(
+			"membrane.particleRadius",
+			particleRadius,
+			f"too coarse, a ring would have {perRing} spheres",
+			f"at most {radius * math.sin(math.pi / _MIN_PER_RING):.6g} m for this specimen ({_MIN_PER_RING} spheres a ring)",
+		)
+	return particleRadius / math.sin(math.pi / perRing) - particleRadius
+
+
+def grading(keys):
+	"""The gradation of the configuration's specimen section ``keys``: read, cut, not yet scaled.
+
+	:raises ConfigError: the file cannot be read or is no gradation.
+	"""
+	try:
+		return Gradation.fromCsv(keys.gradation, keys.cutBelow, keys.cutAbove)
+	except (OSError, ValueError) as error:
+		raise ConfigError("specimen.gradation", keys.gradation, f"is no gradation ({error})", "see the end of that message") from None
+
+
+def radii(keys, radius, height):
+	"""Radii [m] of the grains that fill a cylinder at the wished porosity, in random order.
+
+	:param keys: the configuration's specimen section.
+	:param radius: of the cylinder [m].
+	:param height: of the cylinder [m].
+	"""
+	curve = grading(keys)
+	volume = math.pi * radius**2 * height
+	if keys.grains is None:
+		curve = curve.scaled(keys.scale or 1.0)
+		count = curve.grainCount(keys.porosity, volume)
+		if not 20 <= count <= 1000000:
+			raise ConfigError("specimen.scale", keys.scale, f"gives {count} grains", "change it, or wish for a number of grains")
+	else:
+		count = keys.grains
+		curve = curve.scaled(curve.scaleForGrains(count, keys.porosity, volume))
+	return curve.sample(count, keys.seed)
+
+
+def make(config, say):
+	"""Pack the grains of the configuration's gradation into the cylinder that its lateral boundary will enclose.
+
+	Under ``specimen.stress`` the modulus is such that contacts of equal grains are as stiff as the test's: CylinderPacking's rule is
+	kn = 2 young r1 r2/(r1 + r2), PFC's pi emod min(r1, r2)^2/(r1 + r2), equal with young = pi emod/2.
+
+	:returns: a :class:`hexmembrane.scene.packing_file.Packing`.
+	:raises RuntimeError: the porosity is out of reach; the message says what is in reach.
+	"""
+	keys = config.specimen
+	radius = soilRadius(config)
+	stressed = {}
+	if keys.stress is not None:
+		stressed = {"stress": keys.stress, "young": math.pi * keys.emod / 2, "stiffnessRatio": keys.kratio}
+		stressed.update(friction=keys.friction, rollingFriction=keys.packingRollingFriction)
+	generator = yade.CylinderPacking(
+		radius=radius, height=keys.height, radii=radii(keys, radius, keys.height).tolist(), porosity=keys.porosity, seed=keys.seed, **stressed
+	)
+	generator.generate()
+	packing = packing_file.Packing.of(generator, gradation=pathlib.Path(keys.gradation).name)
+	sizes = f"{1e3 * packing.radii.min():.4g} to {1e3 * packing.radii.max():.4g} mm"
+	say(f"specimen: {len(packing)} grains of radius {sizes}, porosity {packing.porosity:.4f}")
+	if stressed:
+		side, ends = 1e-3 * generator.radialStress, 1e-3 * generator.axialStress
+		say(f"packed under {side:.4g} kPa (side) and {ends:.4g} kPa (ends), coordination {generator.coordination:.3g}")
+	return packing
+
+
+def provide(config, out, say):
+	"""The packing of a test: read from ``specimen.packing`` or made; either way ``packing.txt`` in the folder ``out`` is it.
+
+	:raises ConfigError: the packing file is none, or is for another specimen.
+	"""
+	packing = make(config, say) if config.specimen.packing is None else _read(config, say)
+	packing_file.save(packing, pathlib.Path(out) / "packing.txt")
+	return packing
+
+
+def _read(config, say):
+	"""The packing in the configuration's file, which must fit its specimen."""
+	keys = config.specimen
+	try:
+		packing = packing_file.load(keys.packing)
+	except (OSError, ValueError) as error:
+		raise ConfigError("specimen.packing", keys.packing, f"is no packing ({error})", "see the end of that message") from None
+	for name, has, wants in (("radius", packing.radius, soilRadius(config)), ("height", packing.height, keys.height)):
+		if abs(has - wants) > 1e-9 * wants:
+			raise ConfigError("specimen.packing", keys.packing, f"has {name} {has:.9g} m, this specimen needs {wants:.9g} m", f"set specimen.{name} right")
+	if packing.origin.any():
+		raise ConfigError("specimen.packing", keys.packing, f"stands on {packing.origin.tolist()}", "give one that stands on the origin")
+	say(f"specimen: {len(packing)} grains from {keys.packing}, porosity {packing.porosity:.4f}")
+	return packing

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Triangulated surfaces: normals at their points, inside and outside of a tube."""
+
+import numpy
+import pytest
+from hexmembrane.scene import geometry
+
+
+def test_normals():
+	"""Of an octahedron: along the axes; a point without triangles has none."""
+	points = numpy.array([(1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1), (9, 9, 9)], dtype=float)
+	ring = [(k, (k + 1) % 4) for k in range(4)]
+	triangles = numpy.array([(a, b, 4) for a, b in ring] + [(b, a, 5) for a, b in ring])
+	found = geometry.normals(points, triangles)
+	assert abs(found[:6] - points[:6]).max() < 1e-15 and (found[6] == 0).all()
+
+
+def test_insideTube():
+	"""Inside and outside of a folded tube: one with a collar that overhangs itself."""
+	perRing = 40
+	angle = 2 * numpy.pi * numpy.arange(perRing) / perRing
+	profile = [(1, 0), (1, 1), (2, 0.8), (2, 1.5), (1, 1.2), (1, 2)]
+	x = numpy.vstack([numpy.column_stack([r * numpy.cos(angle), r * numpy.sin(angle), numpy.full(perRing, z)]) for r, z in profile])
+	a, b = numpy.arange(perRing), numpy.roll(numpy.arange(perRing), -1)
+	triangles = []
+	for k in range(len(profile) - 1):
+		low, high = k * perRing, (k + 1) * perRing
+		triangles += [numpy.column_stack([low + a, low + b, high + a]), numpy.column_stack([low + b, high + b, high + a])]
+	triangles = numpy.vstack(triangles)
+	inside = [(0, 0, 0.1), (0.9, 0, 0.5), (0, -1.9, 1.0), (1.5, 0.2, 1.2), (0, 0, 1.9)]
+	outside = [(1.1, 0, 0.5), (1.5, 0, 0.85), (0, 1.9, 1.5), (0, 0, -0.1), (0, 0, 2.1), (5, 5, 1)]
+	assert [geometry.insideTube(p, x, triangles, perRing) for p in inside + outside] == [True] * len(inside) + [False] * len(outside)

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The studies whose pictures and tables the pages show, in their short form: they run, and what they leave is sane."""
+
+import contextlib
+import importlib.util
+import io
+import pathlib
+import re
+
+import numpy
+import pytest
+from hexmembrane.output import records
+from hexmembrane.run import stages
+from hexmembrane.scene.handles import Scene
+from PIL import Image
+
+ROOT = pathlib.Path(__file__).parents[2]
+TESTS = ("flexible-150", "rigid-150")
+
+
+def study(script, *arguments):
+	"""Lines that a study prints in its short form, in this YADE."""
+	import yade
+
+	path = ROOT / script
+	spec = importlib.util.spec_from_file_location(path.stem, path)
+	module = importlib.util.module_from_spec(spec)
+	spec.loader.exec_module(module)
+	yade.O.reset()
+	printed = io.StringIO()
+	with contextlib.redirect_stdout(printed):
+		module.main([*map(str, arguments), "--short"])
+	yade.O.reset()
+	return printed.getvalue().splitlines()
+
+
+def isPicture(path):
+	picture = Image.open(path).convert("L")
+	return min(picture.size) > 500 and picture.getextrema()[0] < 60
+
+
+@pytest.fixture(scope="module")
+def paper(tmp_path_factory):
+	"""The study's tests in short: (folder, lines printed)."""
+	out = tmp_path_factory.mktemp("paper")
+	return out, study("examples/paper/paper_figure.py", out, out / "results.png")
+
+
+def test_paperFigure(paper):
+	out, lines = paper
+	assert [line.split(" | ")[0] for line in lines] == [f"| {name}" for name in TESTS]
+	assert isPicture(out / "results.png")
+	heads = [line for line in (ROOT / "examples/paper/README.md").read_text().splitlines() if line.startswith("| test |")]
+	assert len(heads) == 1 and all(line.count("|") == heads[0].count("|") for line in lines)
+
+
+@pytest.mark.parametrize("name", TESTS)
+def test_studysTests(O, paper, name):
+	"""From packing under stress to shear: the pressure arrives, q rises, the energies add up and the specimen contracts first."""
+	folder = paper[0] / name
+	table = records.read(folder / "records.csv")
+	shear = numpy.array([stage == "shear" for stage in table["stage"]])
+	assert table["axial_strain"][-1] == pytest.approx(0.01, abs=1e-4)
+	assert abs(table["sigma3_transmitted_group3"][shear] / 1.5e5 - 1).max() < 0.05
+	assert abs(table["q"][shear][0]) < 2e4 and table["q"][-1] > 5e4 and (numpy.diff(table["q"][shear]) > 0).all()
+	assert -0.01 < table["volumetric_strain_volume"][-1] < 0
+	# The energy of the packing under stress is there before the first work, and none of it is lost.
+	assert abs(table["energy_error"][shear]).max() < 1e-4
+	assert abs(table["energy_error"][~shear][-1]) < (1e-4 if name.startswith("rigid") else 1e-2)
+	stages.load(folder / "sheared.yade.gz")
+	O.step()
+	Scene().exportContacts()
+	rolling = {round(c.phys.rollingArm / (c.geom.refR1 * c.geom.refR2 / (c.geom.refR1 + c.geom.refR2)), 9) for c in O.interactions}
+	assert rolling == {0.0, 0.5}
+
+
+def test_pressureStudy(paper, tmp_path):
+	"""Ours brings about what was asked for; the study's settings press too hard by R/(Rc - R) and by the cubes beside the platens."""
+	lines = study("examples/paper/pressure_study.py", paper[0] / "flexible-150" / "packing.txt", tmp_path)
+	written = (tmp_path / "table.md").read_text().splitlines()
+	assert written[2:] == lines and written[0] in (ROOT / "examples/paper/pressure.md").read_text()
+	ours, theirs = ([cell.strip() for cell in line.split("|")[1:-1]] for line in lines)
+	assert (ours[3], theirs[3]) == ("ours", "study") and (ours[7] != "", theirs[7]) == (True, "")
+	main, beside = ([float(row[k].split()[0]) for row in (ours, theirs)] for k in (4, 5))
+	assert abs(main[0] - 100) < 6 and 110 < main[1] < 118 and abs(beside[0] - 100) < 6 and beside[1] > 120
+
+
+def test_schemeFigure(tmp_path):
+	"""The rows beside the platens get most with a force of their own, least with none; held ends press by being pushed against."""
+	lines = study("examples/paper/scheme_figure.py", tmp_path)
+	assert isPicture(tmp_path / "schemes.png")
+	page = (ROOT / "examples/paper/schemes.md").read_text()
+	table = [line for line in lines if line.startswith("| ")]
+	assert table[0] in page and len(table) == 8
+	beside, main = ([float(row.split("|")[k]) for row in table[2:]] for k in (3, 4))
+	assert beside[0] > 60 > beside[4] > beside[2] + 5  # three-stage, held, main body only, each after consolidation
+	assert all(90 < value < 110 for value in main)
+
+
+def test_packingStudy():
+	lines = study("pkg/specimen/packing_study.py")
+	digests = [line for line in lines if line.startswith("digests")][0].split(": ")[1].split()
+	assert len(digests) == 2 and digests[0] == digests[1]
+	core = [float(re.search(r"porosity (\S+)", line)[1]) for line in lines if "core (2 d50" in line]
+	assert len(core) == 3 and all(0.3 < n < 0.43 for n in core)
+	reached = [line for line in lines if line.startswith("400 grains")]
+	assert len(reached) == 3 and "fix: " in reached[1] and "coordination" in reached[2]
