@@ -38,7 +38,9 @@ TEST(Random, rangeIsHalfOpenAndEvenlyFilled)
 		squares += u * u;
 	}
 	EXPECT_GE(least, 0);
+	EXPECT_LT(least, 1e-4);
 	EXPECT_LT(most, 1);
+	EXPECT_GT(most, 1 - 1e-4);
 	// mean 1/2 and variance 1/12 within five standard deviations of their chance
 	EXPECT_NEAR(sum / count, 0.5, 5 * std::sqrt(1. / 12 / count));
 	EXPECT_NEAR(squares / count, 1. / 3, 5 * std::sqrt(4. / 45 / count));

@@ -38,9 +38,7 @@ TEST(ThreadPartition, everySphereHasOneOwner)
 							for (int i = from; i < to; ++i) ++owners[i];
 						});
 						for (int i = parts.rowsOf(t).from; i < parts.rowsOf(t).to; ++i) ++swept[i];
-						if (t > 0) {
-							EXPECT_EQ(parts.rowsOf(t).from, parts.rowsOf(t - 1).to) << "upwards";
-						}
+						EXPECT_EQ(parts.rowsOf(t).from, t > 0 ? parts.rowsOf(t - 1).to : 0) << "upwards";
 					}
 					EXPECT_EQ(std::count(owners.begin(), owners.end(), 1), grains + particles)
 					        << grains << " " << particles << " " << threads;
