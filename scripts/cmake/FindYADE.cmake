@@ -73,8 +73,8 @@ endif()
 
 if(NOT YADE_SOURCE_DIR)
 	message(FATAL_ERROR "YADE_SOURCE_DIR is not given: the plugin is compiled against YADE's own source tree, version ${YADE_VERSION}. "
-		"Debian: apt-get source --download-only yade, unpack the .orig tarball; or git tag ${YADE_VERSION} of "
-		"https://gitlab.com/yade-dev/trunk. Then cmake -DYADE_SOURCE_DIR=/path/to/it ...")
+		"Debian: apt-get source --download-only yade, unpack the .orig tarball; or tag ${YADE_VERSION} of YADE's "
+		"git repository. Then cmake -DYADE_SOURCE_DIR=/path/to/it ...")
 endif()
 foreach(_file RELEASE core/Scene.hpp lib/serialization/Serializable.hpp pkg/dem/ScGeom.hpp)
 	if(NOT EXISTS "${YADE_SOURCE_DIR}/${_file}")

@@ -1,8 +1,30 @@
 # shellcheck shell=bash
 # A private apt for Debian 13's archive, beside that of the system: needs no privileges and changes nothing outside its folder.
 
-debianArchive=${HEXMEMBRANE_DEBIAN_ARCHIVE:-http://deb.debian.org/debian}
 debianKeyring=/usr/share/keyrings/debian-archive-keyring.gpg
+
+howToNameAnArchive="fix: export HEXMEMBRANE_DEBIAN_ARCHIVE=ADDRESS, that of a mirror of Debian's archive: the folder with dists/trixie in it"
+
+# chooseArchive APT RELEASE: sets debianArchive, the archive's address: what HEXMEMBRANE_DEBIAN_ARCHIVE says, else the one that this
+# system has its own packages from, if it is a Debian of any release. No address stands in hexmembrane: which mirror is near and
+# allowed only the system's owner knows. APT is apt's folder of configuration, RELEASE the file that names the system.
+chooseArchive() {
+	local apt=$1 release=$2 file files=()
+	debianArchive=${HEXMEMBRANE_DEBIAN_ARCHIVE:-}
+	if [[ -n $debianArchive ]]; then
+		[[ $debianArchive =~ ^[a-z][a-z+]*:/[^[:space:]]+$ ]] ||
+			die "HEXMEMBRANE_DEBIAN_ARCHIVE = $debianArchive: not the address of an archive (METHOD:/...)." "$howToNameAnArchive"
+		return
+	fi
+	[[ $(osField "$release" ID) == debian ]] ||
+		die "HEXMEMBRANE_DEBIAN_ARCHIVE = : not set, and this system is no Debian, whose own archive could be taken." "$howToNameAnArchive"
+	for file in "$apt/sources.list" "$apt"/sources.list.d/*.list "$apt"/sources.list.d/*.sources; do
+		if [[ -r $file ]]; then files+=("$file"); fi
+	done
+	((${#files[@]} == 0)) || debianArchive=$(awk -v codename="$(osField "$release" VERSION_CODENAME)" -f "$setupDir/archive.awk" "${files[@]}")
+	[[ -n $debianArchive ]] ||
+		die "HEXMEMBRANE_DEBIAN_ARCHIVE = : not set, and apt's sources in $apt name no archive of Debian." "$howToNameAnArchive"
+}
 
 # What must be there on the host itself.
 needAptTools() {
@@ -23,11 +45,12 @@ needAptTools() {
 # installed, so that they and what only they need stay out.
 privateApt() {
 	local folder=$1 name
+	chooseArchive /etc/apt /etc/os-release
 	mkdir -p "$folder"/{state/lists/partial,cache/archives/partial,none/partial,etc/apt.conf.d,etc/preferences.d}
 	export APT_CONFIG=$folder/apt.conf
 	{
-		# the way to the network is the system's
-		env -u APT_CONFIG apt-config dump 2>/dev/null | grep -E '^Acquire::[a-z]+::(Proxy|proxy|ProxyAutoDetect|Proxy-Auto-Detect)' || true
+		# the way to the network is the system's: proxies, certificates, passwords of mirrors
+		env -u APT_CONFIG apt-config dump 2>/dev/null | grep -E '^Acquire::https?::' || true
 		cat <<-END
 			APT::Architecture "amd64";
 			APT::Architectures { "amd64"; };
@@ -42,6 +65,8 @@ privateApt() {
 			Dir::State::status "$folder/status";
 			Dir::Cache "$folder/cache";
 			Dir::Etc "$folder/etc";
+			Dir::Etc::netrc "/etc/apt/auth.conf";
+			Dir::Etc::netrcparts "/etc/apt/auth.conf.d";
 			Dir::Log "$folder";
 		END
 	} >"$APT_CONFIG"
@@ -59,7 +84,7 @@ privateApt() {
 		fi
 		die "Debian's archive $debianArchive could not be read: $(grep -E '^[EW]:' "$folder/log" | head -n 1)" \
 			"Nothing was set up. fix: check the network (and the proxy of apt), then run this again." \
-			"Another mirror: HEXMEMBRANE_DEBIAN_ARCHIVE=http://...; the whole output: $folder/log"
+			"Another mirror: HEXMEMBRANE_DEBIAN_ARCHIVE=ADDRESS; the whole output: $folder/log"
 	fi
 }
 
@@ -70,7 +95,7 @@ fetchYadeSource() {
 	local folder=$1 uri name size sum
 	mkdir -p "$folder"
 	read -r uri name size sum < <(apt-get source --print-uris --download-only yade 2>/dev/null | grep -E ' yade_[^ ]+[.]orig[.]tar[.][a-z0-9]+ ') ||
-		die "Debian's archive $debianArchive has no sources of yade." "Another mirror: HEXMEMBRANE_DEBIAN_ARCHIVE=http://..."
+		die "Debian's archive $debianArchive has no sources of yade." "Another mirror: HEXMEMBRANE_DEBIAN_ARCHIVE=ADDRESS"
 	[[ $name == "yade_$yadeVersion.orig.tar."* && $sum == SHA256:* ]] ||
 		die "Debian's archive has the sources $name ($sum), wanted is YADE $yadeVersion." "hexmembrane supports Debian 13's YADE $yadeVersion."
 	yadeTarball=$folder/$name

@@ -30,6 +30,9 @@ fi
 # The entries of a list file: no comments, no empty lines.
 listOf() { sed -e 's/#.*//' -e 's/[[:space:]]*$//' -e '/^$/d' "$setupDir/$1.list"; }
 
+# osField FILE FIELD: what a file like /etc/os-release says, empty when it says nothing.
+osField() { [[ ! -r $1 ]] || sed -nE "s/^$2=[\"']?([^\"']*)[\"']?\$/\\1/p" "$1"; }
+
 # Takes the lock named $2 on descriptor $1, waiting for another run that holds it. The descriptor is inherited on purpose: work
 # that a killed run has left in the background keeps the lock until it has ended.
 lock() {

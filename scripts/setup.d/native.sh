@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # Debian 13 itself: YADE and the rest are the system's packages.
 
-isDebian13() { [[ -r /etc/os-release ]] && (. /etc/os-release && [[ ${ID:-} == debian && ${VERSION_ID:-} == 13 ]]); }
+isDebian13() { [[ $(osField /etc/os-release ID) == debian && $(osField /etc/os-release VERSION_ID) == 13 ]]; }
 
 # The packages of packages.list that are not installed.
 missingPackages() {

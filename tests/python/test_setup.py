@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The set-up's decisions: where Debian's archive is, which build folder is its own.
+
+The functions of scripts/setup.d are called as the scripts call them, on made-up folders.
+"""
+
+import pathlib
+import shutil
+import subprocess
+
+import pytest
+
+CHECKOUT = pathlib.Path(__file__).resolve().parents[2]
+SETUP = CHECKOUT / "scripts" / "setup.d" / "setup.sh"
+
+
+@pytest.fixture
+def call(tmp_path):
+	"""Runs bash after setup.sh was read: (exit code, stdout, stderr)."""
+
+	# The private root has no alternatives: its awk is there under its own name only.
+	(tmp_path / "bin").mkdir()
+	(tmp_path / "bin" / "awk").symlink_to(shutil.which("awk") or shutil.which("mawk"))
+
+	def run(code, *arguments, **variables):
+		environment = {"PATH": "%s/bin:/usr/bin:/bin" % tmp_path, "XDG_CACHE_HOME": str(tmp_path / "cache"), **variables}
+		command = ["bash", "-c", ". %s\n%s" % (SETUP, code), "bash", *map(str, arguments)]
+		result = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60)
+		return result.returncode, result.stdout, result.stderr
+
+	return run
+
+
+@pytest.fixture
+def archive(call, tmp_path):
+	"""The archive chosen on a system with the given release and source files."""
+
+	def choose(files, system="debian", codename="bookworm", **variables):
+		apt = tmp_path / "apt"
+		(apt / "sources.list.d").mkdir(parents=True)
+		for name, text in files.items():
+			(apt / name).write_text(text)
+		release = tmp_path / "os-release"
+		release.write_text('NAME="Some"\nVERSION_CODENAME=%s\nID=%s\n' % (codename, system))
+		return call('chooseArchive "$@"; echo "$debianArchive"', apt, release, **variables)
+
+	return choose
+
+
+ONE_LINE = "deb http://near/debian bookworm main\n"
+DEB822 = "Types: deb deb-src\nURIs: http://near/debian\nSuites: bookworm bookworm-updates\nComponents: main\nSigned-By: /usr/share/keyrings/debian-archive-keyring.gpg\n"
+# for Debian's release, but not Debian
+OTHERS = "deb [arch=amd64 signed-by=/etc/apt/keyrings/wine.gpg] http://wine/debian bookworm main\ndeb http://tools/apt tools-bookworm main\n"
+
+
+@pytest.mark.parametrize(
+	"files, codename, wanted",
+	[
+		({"sources.list": ONE_LINE}, "bookworm", "http://near/debian"),
+		({"sources.list": "# deb http://old/debian bookworm main\n" + ONE_LINE.replace("\n", " contrib # near\n")}, "bookworm", "http://near/debian"),
+		({"sources.list": "deb cdrom:[Debian 12]/ bookworm main\n" + ONE_LINE}, "bookworm", "http://near/debian"),
+		({"sources.list": ONE_LINE.replace("bookworm", "stable")}, "bookworm", "http://near/debian"),
+		({"sources.list": ONE_LINE.replace("bookworm", "forky")}, "forky", "http://near/debian"),
+		({"sources.list": "deb-src [ signed-by=/usr/share/keyrings/debian-archive-keyring.gpg trusted=no ] https://near:8080/d trixie main\n"}, "trixie", "https://near:8080/d"),
+		({"sources.list": "deb mirror+file:/etc/apt/mirrors.list bookworm main\n"}, "bookworm", "mirror+file:/etc/apt/mirrors.list"),
+		({"sources.list": OTHERS, "sources.list.d/debian.list": ONE_LINE}, "bookworm", "http://near/debian"),
+		({"sources.list": "", "sources.list.d/debian.sources": DEB822}, "bookworm", "http://near/debian"),
+		({"sources.list.d/debian.sources": DEB822.replace("http://near/debian", "\n mirror+file:///etc/apt/m.list\n http://far/debian")}, "bookworm", "mirror+file:///etc/apt/m.list"),
+		({"sources.list.d/debian.sources": DEB822.replace("near", "off") + "Enabled: no\n\n# ours\n" + DEB822.lower()}, "bookworm", "http://near/debian"),
+		({"sources.list.d/debian.sources": DEB822.replace("bookworm bookworm-updates", "bookworm-security").replace("near", "safe") + "\n" + DEB822}, "bookworm", "http://near/debian"),
+		({"sources.list.d/a.sources": DEB822.replace("debian-archive-", "wine-").replace("near", "wine"), "sources.list.d/b.sources": DEB822}, "bookworm", "http://near/debian"),
+	],
+)
+def test_archiveOfThisDebian(archive, files, codename, wanted):
+	assert archive(files, codename=codename) == (0, wanted + "\n", "")
+
+
+@pytest.mark.parametrize("system", ["debian", "ubuntu"])
+def test_archiveOfTheVariable(archive, system):
+	"""What the user says wins on every system."""
+	assert archive({"sources.list": ONE_LINE}, system, HEXMEMBRANE_DEBIAN_ARCHIVE="http://mine/debian") == (0, "http://mine/debian\n", "")
+
+
+@pytest.mark.parametrize(
+	"files, system, variable, wanted",
+	[
+		({"sources.list": ONE_LINE}, "ubuntu", "", "HEXMEMBRANE_DEBIAN_ARCHIVE = : not set, and this system is no Debian"),
+		({}, "debian", "", "name no archive of Debian"),
+		({"sources.list": OTHERS, "sources.list.d/debian.sources": DEB822 + "Enabled: no\n"}, "debian", "", "name no archive of Debian"),
+		({"sources.list": ONE_LINE}, "debian", "near", "HEXMEMBRANE_DEBIAN_ARCHIVE = near: not the address of an archive"),
+	],
+)
+def test_noArchive(archive, files, system, variable, wanted):
+	"""The message names the variable and says how to set it."""
+	code, said, error = archive(files, system, HEXMEMBRANE_DEBIAN_ARCHIVE=variable)
+	assert code == 1 and said == "" and wanted in error and "fix: export HEXMEMBRANE_DEBIAN_ARCHIVE=ADDRESS" in error
