@@ -3,6 +3,7 @@
 # beside it, so that nobody else downloads it and the root stays as it is.
 
 # chooseLammps: sets lammps, the program to run beside YADE. Needs chooseHost.
+# shellcheck disable=SC2034 # for scripts/bench
 chooseLammps() {
 	if [[ $host == native ]]; then
 		lammps=$(command -v lmp) || die "there is no lmp in PATH: the benchmark compares with Debian's LAMMPS." "fix: apt-get install --no-install-recommends lammps"
@@ -17,7 +18,7 @@ chooseLammps() {
 # setUpLammps FOLDER: what LAMMPS needs beyond the packages of the root, made under another name and renamed at the end.
 setUpLammps() {
 	local folder=$1 work=$1.part apt=$1.part/apt name size sum
-	local packages names=() wanted=()
+	local packages names=() needed=()
 	needAptTools
 	lock 9 root
 	if [[ -d $folder ]]; then # made by the run that was waited for
@@ -32,13 +33,13 @@ setUpLammps() {
 	filesFor "$apt" "${packages[@]}" >"$work/root"
 	filesFor "$apt" "${packages[@]}" lammps >"$work/both"
 	# potentials of molecular dynamics are no use here
-	mapfile -t wanted < <(LC_ALL=C comm -13 "$work/root" "$work/both" | grep -v '^lammps-data_')
-	((${#wanted[@]})) || die "apt lists no package for LAMMPS." "the lists: $work/root, $work/both"
-	for name in "${wanted[@]}"; do names+=("${name%%_*}"); done
+	mapfile -t needed < <(LC_ALL=C comm -13 "$work/root" "$work/both" | grep -v '^lammps-data_')
+	((${#needed[@]})) || die "apt lists no package for LAMMPS." "the lists: $work/root, $work/both"
+	for name in "${needed[@]}"; do names+=("${name%%_*}"); done
 	say "downloading LAMMPS for this benchmark (${#names[@]} packages, about 10 MB)"
 	(cd "$apt/cache/archives" && apt-get -q=2 download "${names[@]}") >"$apt/log" 2>&1 ||
 		die "LAMMPS could not be downloaded: $(grep -E '^[EW]:' "$apt/log" | head -n 1)" "Run this again; the whole output: $apt/log"
-	for name in "${wanted[@]}"; do
+	for name in "${needed[@]}"; do
 		read -r name size sum <<<"$name"
 		"$setupDir/unpack" "$work" "$name" "$size" "${sum#SHA256:}" || die "the package $name could not be unpacked." "Run this again."
 	done

@@ -1,9 +1,17 @@
 # shellcheck shell=bash
-# prepare [TARGET...]: does whatever set-up is still missing and builds (hexmembrane: the plugin alone; by default the tests and
+# prepare TARGET...: does whatever set-up is still missing and builds in build/ (hexmembrane: the plugin alone; all: the tests and
 # benchmarks too). Afterwards the array `entry` holds the words before a command that is to run beside YADE.
 set -euo pipefail
-# shellcheck source=/dev/null
-for _part in common apt root native lammps; do . "$(dirname "${BASH_SOURCE[0]}")/$_part.sh"; done
+# shellcheck source=scripts/setup.d/common.sh
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+# shellcheck source=scripts/setup.d/apt.sh
+. "$setupDir/apt.sh"
+# shellcheck source=scripts/setup.d/root.sh
+. "$setupDir/root.sh"
+# shellcheck source=scripts/setup.d/native.sh
+. "$setupDir/native.sh"
+# shellcheck source=scripts/setup.d/lammps.sh
+. "$setupDir/lammps.sh"
 
 # Where YADE comes from: sets host (native or root), yadeSource and entry.
 chooseHost() {
@@ -43,39 +51,46 @@ chooseHost() {
 	entry+=(HEXMEMBRANE_BUILD="$buildDir")
 }
 
-# buildPlugin TARGET...: what is named of the build (everything: plugin, kernels' tests and benchmarks), in build/. ninja itself finds
-# out what is out of date.
-buildPlugin() {
-	local stamp=$buildDir/.host jobs memoryGb log
-	lock 8 "build-$(printf '%s' "$checkout" | sha256sum | cut -c 1-12)"
-	if [[ -e $buildDir && ! -e $stamp ]]; then
-		[[ ! -e $buildDir/CMakeCache.txt ]] || die "$buildDir was configured by hand; scripts/ would overwrite it." \
-			"fix: remove it, or use another folder for builds of your own: cmake -B build-own ..."
-	fi
-	mkdir -p "$buildDir" || die "$checkout is not writable: there is no place for the build."
-	log=$buildDir/configure.log
-	if [[ ! -f $buildDir/build.ninja || $(cat "$stamp" 2>/dev/null) != "$hostId $checkout" ]]; then
-		say "configuring the build ($hostId)"
-		find "$buildDir" -mindepth 1 -delete
-		echo unfinished >"$stamp"
-		"${entry[@]}" cmake -S "$checkout" -B "$buildDir" -G Ninja -DCMAKE_BUILD_TYPE=Release -DYADE_EXECUTABLE=/usr/bin/yade-double \
-			-DYADE_SOURCE_DIR="$yadeSource" >"$log" 2>&1 || {
-			cat "$log" >&2
-			die "cmake failed (see above)."
-		}
-		echo "$hostId $checkout" >"$stamp"
-	fi
+# build FOLDER "TARGET..." OPTION...: builds the targets in FOLDER, configured with CMake's OPTIONs. ninja itself finds out what is out
+# of date.
+build() {
+	local folder=$1 jobs jobsByMemory targets
+	read -ra targets <<<"$2"
+	shift 2
+	lock 8 "build-$(printf '%s' "$folder" | sha256sum | cut -c 1-12)"
+	configure "$folder" "$@"
 	# A unit of the plugin takes up to 5.2 GB to compile.
-	memoryGb=$(awk '/^MemTotal:/ { print int($2 / 5.2e6) }' /proc/meminfo)
+	jobsByMemory=$(awk '/^MemTotal:/ { print int($2 / 5.2e6) }' /proc/meminfo)
 	jobs=$(processors)
-	((memoryGb >= jobs)) || jobs=$((memoryGb > 0 ? memoryGb : 1))
-	"${entry[@]}" ninja -C "$buildDir" -j "$jobs" "$@" | tellBuild || die "the build failed (see above)."
+	((jobsByMemory >= jobs)) || jobs=$((jobsByMemory > 0 ? jobsByMemory : 1))
+	"${entry[@]}" ninja -C "$folder" -j "$jobs" "${targets[@]}" | tellBuild "$folder" || die "the build failed (see above)."
 	exec 8>&-
+}
+
+# configure FOLDER OPTION...: by CMake, when the host, the checkout's place or the options are not those of FOLDER's stamp. FOLDER is
+# emptied then, so one without a stamp is refused: it is somebody's own.
+configure() {
+	local folder=$1 stamp=$1/.host log=$1/configure.log wanted
+	shift
+	[[ ${CI:-} != true ]] || set -- "$@" -DHEXMEMBRANE_WERROR=ON
+	wanted="$hostId $checkout $*"
+	[[ ! -f $folder/build.ninja || $(cat "$stamp" 2>/dev/null) != "$wanted" ]] || return 0
+	[[ -e $stamp || -z $(ls -A "$folder" 2>/dev/null) ]] || die "$folder: not made by scripts/, which would empty it." \
+		"fix: remove or rename it; for builds of your own use another folder: cmake -B build-own ..."
+	say "configuring ${folder##*/}/ ($hostId)"
+	mkdir -p "$folder" || die "$checkout is not writable: there is no place for the build."
+	echo unfinished >"$stamp"
+	find "$folder" -mindepth 1 ! -path "$stamp" -delete
+	"${entry[@]}" cmake -S "$checkout" -B "$folder" -G Ninja "$@" >"$log" 2>&1 || {
+		cat "$log" >&2
+		die "cmake failed (see above)."
+	}
+	echo "$wanted" >"$stamp"
 }
 
 # ninja's lines, once there is something to build. ninja says nothing before the first file is compiled, which may take a minute.
 tellBuild() {
-	local line building=0 status
+	local folder=$1 line building=0 status
 	while :; do
 		status=0
 		IFS= read -r -t 2 line || status=$?
@@ -85,7 +100,7 @@ tellBuild() {
 			"ninja: Entering"* | "[0/"* | "ninja: no work"*) continue ;;
 			esac
 		fi
-		((building)) || say "building the plugin (the first time takes some minutes)"
+		((building)) || say "building in ${folder##*/}/ (the first time takes some minutes)"
 		building=1
 		((status)) || printf '%s\n' "$line" >&2
 	done
@@ -93,7 +108,7 @@ tellBuild() {
 
 prepare() {
 	chooseHost
-	buildPlugin "$@"
+	build "$buildDir" "$*" -DCMAKE_BUILD_TYPE=Release -DYADE_EXECUTABLE=/usr/bin/yade-double -DYADE_SOURCE_DIR="$yadeSource"
 }
 
 # runBeside COMMAND...: runs COMMAND beside YADE as the last thing of this script, with its exit code. Signals must reach COMMAND, which

@@ -94,3 +94,41 @@ def test_noArchive(archive, files, system, variable, wanted):
 	"""The message names the variable and says how to set it."""
 	code, said, error = archive(files, system, HEXMEMBRANE_DEBIAN_ARCHIVE=variable)
 	assert code == 1 and said == "" and wanted in error and "fix: export HEXMEMBRANE_DEBIAN_ARCHIVE=ADDRESS" in error
+
+
+CONFIGURE = """hostId=host; checkout=$1
+fakeCmake() { printf '%s\\n' "$*"; touch "$1/build/build.ninja" "$1/build/object"; }
+entry=(fakeCmake "$1")
+configure "$1/build" -DA=1 && cat "$1/build/configure.log" && ls "$1/build"
+"""
+
+
+def test_ownBuildFolderIsMadeAndKept(call, tmp_path):
+	"""A second call finds all as it was and configures nothing; other options do."""
+	code, said, _ = call(CONFIGURE, tmp_path)
+	assert code == 0 and said.startswith("%s cmake -S %s -B %s/build -G Ninja -DA=1\n" % (tmp_path, tmp_path, tmp_path))
+	(tmp_path / "build" / "configure.log").write_text("kept\n")
+	assert call(CONFIGURE, tmp_path)[1].startswith("kept\n")
+	assert "-DA=2" in call(CONFIGURE.replace("-DA=1", "-DA=2"), tmp_path)[1]
+
+
+def test_somebodysBuildFolderIsRefused(call, tmp_path):
+	"""Files that the set-up has not made are not removed."""
+	(tmp_path / "build").mkdir()
+	(tmp_path / "build" / "thesis.tex").write_text("years of work")
+	code, _, error = call(CONFIGURE, tmp_path)
+	assert code == 1 and "build: not made by scripts/" in error and "fix: " in error
+	assert (tmp_path / "build" / "thesis.tex").read_text() == "years of work"
+
+
+def test_interruptedConfigurationGoesOn(call, tmp_path):
+	"""A folder that a killed run has left is known by its stamp and made anew."""
+	(tmp_path / "build" / "CMakeFiles").mkdir(parents=True)
+	(tmp_path / "build" / ".host").write_text("unfinished\n")
+	code, said, _ = call(CONFIGURE, tmp_path)
+	assert code == 0 and "CMakeFiles" not in said
+
+
+@pytest.mark.parametrize("variables, asked", [({}, False), ({"CI": "true"}, True)])
+def test_warningsAreErrorsInContinuousIntegrationOnly(call, tmp_path, variables, asked):
+	assert ("-DHEXMEMBRANE_WERROR=ON" in call(CONFIGURE, tmp_path, **variables)[1]) is asked
