@@ -1,10 +1,23 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-/// Marks a leaf loop over plain arrays of doubles that is compiled several times and picked by the processor at load time: one build runs on every
-/// x86-64 machine. (Not under sanitizers, whose start-up comes after the choice.)
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+/// Marks a leaf loop over plain arrays of doubles that is compiled for the instruction set of CMake's HEXMEMBRANE_SIMD. `auto` compiles it for all three
+/// sets: the processor picks one at load time, so one build runs on every x86-64 machine. Marked are loops in .cpp files of kernels only, since CMake
+/// compiles these files again for the tests of each set.
+///
+/// The sets differ in rounding: v3 and v4 contract a product and a sum into one operation (FMA), and the order of a vectorised sum follows the width of the
+/// vectors. So what is the same "to the last bit" is so for one set only, with `auto` on one kind of processor.
+#if defined(HEXMEMBRANE_SIMD_AUTO)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#error "HEXMEMBRANE_SIMD = auto: the processor's choice comes before a sanitizer's start-up; fix: -DHEXMEMBRANE_SIMD=default, v3 or v4"
+#endif
 #define HEXMEMBRANE_WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
+#elif defined(HEXMEMBRANE_SIMD_V4)
+#define HEXMEMBRANE_WIDEST __attribute__((target("arch=x86-64-v4")))
+#elif defined(HEXMEMBRANE_SIMD_V3)
+#define HEXMEMBRANE_WIDEST __attribute__((target("arch=x86-64-v3")))
+#elif defined(HEXMEMBRANE_SIMD_DEFAULT)
 #define HEXMEMBRANE_WIDEST
+#else
+#define HEXMEMBRANE_WIDEST static_assert(false, "HEXMEMBRANE_WIDEST in a file that CMake compiles for no set; fix: touch CMakeLists.txt (see Simd.hpp)");
 #endif
