@@ -103,6 +103,9 @@ void publish(const Names& names, const py::object& wrapper)
 
 } // namespace
 
+// Which package the plugin belongs to: asked for by its name in the library, since YADE loads an installed plugin without initialising the module.
+extern "C" __attribute__((visibility("default"))) const char* hexmembraneVersion() { return HEXMEMBRANE_VERSION; }
+
 extern "C" __attribute__((visibility("default"))) PyObject* PyInit_libhexmembrane()
 {
 	static PyModuleDef definition = {

@@ -6,14 +6,17 @@ the library is a Python extension module whose import registers its classes; the
 that folder (scripts/yade, scripts/run and scripts/test set it).
 """
 
+import ctypes
 import importlib.machinery
 import importlib.util
 import os
 import sys
 
-#: The class by which one sees that the plugin is loaded.
-_MARK = "LayoutProbe"
+import hexmembrane
+
 _MODULE = "libhexmembrane"
+#: The plugin's classes are registered together; this one every script needs.
+_CLASS = "HexMembrane"
 
 
 def _refuseAnother(folder):
@@ -36,6 +39,26 @@ def loadedLibrary():
 	return None
 
 
+def versionOf(path):
+	"""Version that the library at `path` states, which this process has loaded; None when it states none."""
+	try:
+		function = ctypes.CDLL(path, mode=os.RTLD_NOLOAD).hexmembraneVersion
+	except AttributeError:
+		return None
+	function.restype = ctypes.c_char_p
+	return function().decode()
+
+
+def _refuseAnotherVersion(path):
+	"""Package and plugin are made for each other: attributes and engines of another version are not those that the scripts set."""
+	version = versionOf(path)
+	if version != hexmembrane.__version__:
+		raise ImportError(
+			"%s = version %s: the Python package %s is version %s; fix: build and install both from one checkout (scripts/test, or cmake --build "
+			"and cmake --install)" % (path, version or "unknown", os.path.dirname(os.path.abspath(__file__)), hexmembrane.__version__)
+		)
+
+
 def load():
 	"""Loads the plugin unless it is loaded; raises ImportError saying what to do when that cannot be."""
 	try:
@@ -46,8 +69,9 @@ def load():
 			"(or with your own YADE's program)." % error
 		) from error
 	folder = os.environ.get("HEXMEMBRANE_BUILD")
-	if hasattr(yade.wrapper, _MARK):
+	if hasattr(yade.wrapper, _CLASS):
 		_refuseAnother(folder)
+		_refuseAnotherVersion(loadedLibrary())
 		return
 	if not folder:
 		raise ImportError(
@@ -57,16 +81,13 @@ def load():
 	path = os.path.join(os.path.abspath(folder), _MODULE + ".so")
 	if not os.path.isfile(path):
 		raise ImportError("HEXMEMBRANE_BUILD = %s: there is no %s.so in it. Build the plugin: cmake --build %s." % (folder, _MODULE, folder))
-	# YADE's classes are shared with the plugin, so its symbols must be global ones, as for every plugin of YADE.
-	flags = sys.getdlopenflags()
-	sys.setdlopenflags(os.RTLD_NOW | os.RTLD_GLOBAL)
 	try:
+		# YADE's classes are shared with the plugin, so its symbols must be global ones, as for every plugin of YADE.
+		ctypes.CDLL(path, mode=os.RTLD_NOW | os.RTLD_GLOBAL)
+		_refuseAnotherVersion(path)
 		loader = importlib.machinery.ExtensionFileLoader(_MODULE, path)
-		spec = importlib.util.spec_from_file_location(_MODULE, path, loader=loader)
-		module = importlib.util.module_from_spec(spec)
+		module = importlib.util.module_from_spec(importlib.util.spec_from_file_location(_MODULE, path, loader=loader))
 		loader.exec_module(module)
-	except ImportError as error:
+	except OSError as error:
 		raise ImportError("%s could not be loaded into YADE: %s. Rebuild it against this very YADE." % (path, error)) from error
-	finally:
-		sys.setdlopenflags(flags)
 	sys.modules[_MODULE] = module
