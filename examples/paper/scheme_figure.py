@@ -4,7 +4,7 @@
 	scripts/yade -x examples/paper/scheme_figure.py [FOLDER] [--picture FILE] [--short]
 
 FOLDER (out/schemes) keeps the tests and the numbers of schemes.md; FILE is by default the picture of this folder, with --short one in
-FOLDER. A scheme whose folder has its result is not run again. It takes some 4 minutes of one core; --short, with 150 grains and next to no
+FOLDER. A scheme whose folder has its result is not run again. It takes under a minute of one core; --short, with 150 grains and next to no
 strain, takes seconds.
 
 three-stage: O-ring rows ride with the platens, a radial force on the rows beside the platens, pressure on the triangles of the main body.
@@ -37,8 +37,6 @@ SETTINGS = {
 	"membrane": {"servoTime": math.inf, "pressureTime": math.inf},
 	"shear": {"strain": 0.06},
 	"output": {"records": 24, "vtkEvery": 0, "checkpointEvery": 0},
-	# A script that blocks degrees of freedom of membrane particles is understood by YADE's own loop alone.
-	"tier": "reference",
 }
 SHORT = {
 	"specimen": {"grains": 150, "porosity": 0.46},
