@@ -162,6 +162,13 @@ bool CompactState::refresh(const Scene& scene, const Sheet& now, int threads)
 #pragma omp parallel for schedule(static) num_threads(threads) reduction(+ : changed) reduction(max : way2)
 	for (int i = 0; i < count; ++i) {
 		prefetchAhead(bodies, spheres.id, i);
+		constexpr int ahead = 12; // what is watched lies behind pointers of its own
+		if (i + ahead < count) {
+			const int next = spheres.id[i + ahead];
+			__builtin_prefetch(&marks[next].inertia);
+			__builtin_prefetch(&marks[next]);
+			if (const Body* b = livingBody(bodies, next)) __builtin_prefetch(&static_cast<const Sphere*>(b->shape.get())->radius);
+		}
 		const Body* b = livingBody(bodies, spheres.id[i]);
 		if (!b || !marks[spheres.id[i]].holds(*b)) {
 			++changed;
