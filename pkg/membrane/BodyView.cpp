@@ -16,7 +16,8 @@ void Stepped::stepOverBodies(GlobalEngine& self)
 	Scene& scene = *self.scene;
 	const string who = self.getClassName();
 	if (const auto* keeper = ContactKeeper::of(scene))
-		throw std::runtime_error(who + ": it stands in O.engines beside a " + keeper->getClassName() + ", where it would act once in many steps; fix: put it into its engines");
+		throw std::runtime_error(who + ": it stands in O.engines beside a " + keeper->getClassName() +
+		                         ", where it would act once in many steps; fix: put it into its engines");
 	bool integrated = false;
 	for (const auto& engine : scene.engines) {
 		if (dynamic_cast<const NewtonIntegrator*>(engine.get())) integrated = true;

@@ -4,6 +4,7 @@
 import pathlib
 
 import pytest
+import yade
 from hexmembrane import configuration
 from hexmembrane.configuration import Config
 from hexmembrane.configuration.schema import markdown
@@ -24,6 +25,24 @@ def test_tableOfColumns():
 	text = README.read_text(encoding="utf-8")
 	assert records.markdown() in text
 	assert all(f"| `{column.name}` |" in text for column in records.COLUMNS)
+
+
+def contractTable():
+	"""The compact tier's reading contract as a table; an attribute of C++ or Python is set as code, a phrase is not."""
+
+	def cell(attribute):
+		names = attribute.split(", ")
+		return attribute if any(" " in name for name in names) else ", ".join(f"`{name}`" for name in names)
+
+	rows = [f"| {of} | {cell(attribute)} | {treatment} | {what} |" for of, attribute, treatment, what in yade.CompactLoop.contract()]
+	return "\n".join(["| of | attribute | treatment | what |", "| --- | --- | --- | --- |", *rows])
+
+
+def test_tableOfTheReadingContract():
+	"""Fix: paste the table that the message shows between the markers."""
+	text = (ROOT / "pkg" / "compact" / "README.md").read_text(encoding="utf-8")
+	between = text.partition("<!-- CompactLoop.contract() -->")[2].partition("<!-- end -->")[0].strip()
+	assert between == contractTable(), "fix: paste this table:\n" + contractTable()
 
 
 def test_tableOfModules():

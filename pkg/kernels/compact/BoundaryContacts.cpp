@@ -15,7 +15,8 @@ bool BoundaryContacts::restore(int sphere, const Contact& contact)
 	return true;
 }
 
-ContactWorks BoundaryContacts::rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfSphere& springs)
+ContactWorks BoundaryContacts::rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds,
+                                       const OfSphere& springs)
 {
 	BoundaryContacts old;
 	old.spheres.swap(spheres);
