@@ -15,7 +15,8 @@ bool BoundaryContacts::restore(int sphere, const Contact& contact)
 	return true;
 }
 
-ContactWorks BoundaryContacts::rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfSphere& springs)
+ContactWorks BoundaryContacts::rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds,
+                                       const OfSphere& springs)
 {
 	BoundaryContacts old;
 	old.spheres.swap(spheres);
@@ -58,7 +59,7 @@ double BoundaryContacts::energy(const Boundary& boundary, const std::vector<Plac
 {
 	double sum = 0;
 	forEachTouching([&](int i, const Contact& contact) {
-		sum += contactEnergy(contact.law, contact.law.kn * boundary.shape->touch(places[i]).overlap, contact.memory.shear, contact.memory.moment);
+		sum += contactEnergy(contact.law, contact.law.kn * boundary.shape->touch(places[i]).overlap, contact.memory);
 	});
 	return sum;
 }
