@@ -21,7 +21,7 @@ hexmembrane::CylinderBoundary CylinderWall::boundary(const State& state) const {
 
 namespace {
 
-const CompactBoundary<CylinderWall> cylinderWallInCompactTier([](const CylinderWall& wall, const State& state) {
+const CompactBoundary<CylinderWall> cylinderWallInCompactTier("radius, height", [](const CylinderWall& wall, const State& state) {
 	wall.requireComplete();
 	return hexmembrane::boundaryShape(wall.boundary(state));
 });

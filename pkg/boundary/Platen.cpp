@@ -38,7 +38,7 @@ void Platen::postLoad(Platen&)
 
 namespace {
 
-const CompactBoundary<Platen> platenInCompactTier([](const Platen& platen, const State& state) {
+const CompactBoundary<Platen> platenInCompactTier("radius, height", [](const Platen& platen, const State& state) {
 	platen.requireComplete();
 	return hexmembrane::boundaryShape(hexmembrane::PlatenBoundary{platen.solid(state.se3)});
 });

@@ -82,7 +82,7 @@ private:
 	int require(Body::id_t boundary) const
 	{
 		const int b = state.boundaryIndex(boundary);
-		if (b < 0) refuseBody(boundary, "is no boundary that the loop has read", "give the id of a Platen or CylinderWall body");
+		if (b < 0) refuseBody(boundary, "is no boundary that the loop has read", "give the id of a boundary's body: " + BoundaryRegistry::names());
 		return b;
 	}
 

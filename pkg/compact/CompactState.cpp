@@ -103,7 +103,7 @@ CompactState::CompactState(const Scene& scene, const Sheet& given) : sheet(given
 			addBoundary(*b);
 		else
 			refuseBody(b->getId(), "is a " + (b->shape ? b->shape->getClassName() : string("body without a shape")),
-			           "only Sphere and the boundaries Platen and CylinderWall are known here; use the reference tier");
+			           "only Sphere and boundaries (" + BoundaryRegistry::names() + ") are known here; use the reference tier");
 		marks[b->getId()] = BodyMark(*b);
 	}
 	const int grainCount = static_cast<int>(rows.size());

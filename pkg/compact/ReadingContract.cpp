@@ -1,6 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "ReadingContract.hpp"
 
+#include "BoundaryRegistry.hpp"
 #include "Stepped.hpp"
 
 #include <core/InteractionLoop.hpp>
@@ -10,9 +11,11 @@
 
 namespace yade {
 
-const vector<ReadingRow>& readingContract()
+namespace {
+
+vector<ReadingRow> makeContract()
 {
-	static const vector<ReadingRow> rows{
+	vector<ReadingRow> rows{
 	        {"Scene", "dt", "read", "any value > 0"},
 	        {"Scene", "trackEnergy", "read", "energies are entered once an iteration"},
 	        {"Scene", "stopAtIter, stopAtTime", "read", "an iteration ends there"},
@@ -24,7 +27,7 @@ const vector<ReadingRow>& readingContract()
 	         "a collider, InteractionLoop, NewtonIntegrator or second CompactLoop beside the loop; an engine that is in both lists"},
 	        {"Body", "number of bodies", "watched", "bodies may come and go; a membrane's must stay"},
 	        {"Body", "material", "watched", "must be a LinearMat"},
-	        {"Body", "shape", "watched", "Sphere, or a boundary that is registered (Platen, CylinderWall)"},
+	        {"Body", "shape", "watched", "Sphere, or a boundary that is registered (" + BoundaryRegistry::names() + ")"},
 	        {"Body", "mask", "watched", "all bodies must have one bit in common"},
 	        {"Body", "clumpId", "refused", "no clumps"},
 	        {"Body", "bounded", "refused", "a body that no collider sees"},
@@ -37,11 +40,19 @@ const vector<ReadingRow>& readingContract()
 	        {"State", "blockedDOFs, dynamic", "watched", "grains all or none, membrane particles any, boundaries all"},
 	        {"State", "isDamped", "watched", "True for what moves freely; of no effect on what is blocked"},
 	        {"Sphere", "radius", "watched", "one for all particles of a membrane"},
-	        {"Platen", "radius, height", "read", "in every step"},
-	        {"CylinderWall", "radius, height", "read", "in every step"},
 	        {"LinearMat", "kn, ks, emod, kratio, friction, rollingFriction", "read", "contacts follow at once; a spring that is taken away lets go"},
 	        {"LinearMat", "cbTensile, cbShear, density", "read", "by what makes bonds and bodies, not by a step"},
 	};
+	for (const BoundaryRegistry::Entry* boundary : BoundaryRegistry::byName())
+		rows.push_back({boundary->name(), boundary->attributes, "read", "in every step"});
+	return rows;
+}
+
+} // namespace
+
+const vector<ReadingRow>& readingContract()
+{
+	static const vector<ReadingRow> rows = makeContract();
 	return rows;
 }
 

@@ -9,7 +9,7 @@ namespace yade {
 
 /*! What the compact tier does with an attribute that a script may change between iterations. */
 struct ReadingRow {
-	const char *of, *attribute, *treatment, *what;
+	string of, attribute, treatment, what;
 };
 
 //! The reading contract: every attribute of scene, body, state, shape and material that acts on a step in the reference tier is

@@ -14,7 +14,7 @@ bool Law2_ScGeom_LinearPhys_Linear::go(shared_ptr<IGeom>& geometry, shared_ptr<I
 	if (!phys.normalOnly()) return advance(geom, phys, *contact);
 	if (geom.penetrationDepth < 0) return false;
 	phys.normalForce = phys.kn * geom.penetrationDepth * geom.normal;
-	if (scene->trackEnergy) book({phys.kn * geom.penetrationDepth, false, hexmembrane::BondBreak::none, {}}, phys);
+	if (scene->trackEnergy) book({phys.kn * geom.penetrationDepth, false, hexmembrane::BondBreak::none, {}}, phys, phys.memory(geom.normal));
 	pushApart(geom, phys, *contact);
 	return true;
 }
@@ -22,14 +22,14 @@ bool Law2_ScGeom_LinearPhys_Linear::go(shared_ptr<IGeom>& geometry, shared_ptr<I
 bool Law2_ScGeom_LinearPhys_Linear::advance(const ScGeom& geom, LinearPhys& phys, const Interaction& contact)
 {
 	const hexmembrane::ContactLaw law = phys.law();
-	hexmembrane::ContactMotion motion{geom.penetrationDepth, geom.shearIncrement(), Vector3r::Zero()};
-	geom.rotate(phys.shearForce);
-	if (law.kr > 0 && !phys.bonded) {
-		const State &state1 = *Body::byId(contact.getId1(), scene)->state, &state2 = *Body::byId(contact.getId2(), scene)->state;
-		motion.bend = scene->dt * hexmembrane::acrossNormal(state2.angVel - state1.angVel, geom.normal);
-		geom.rotate(phys.moment);
-	}
-	const hexmembrane::ContactStep step = hexmembrane::advanceContact(law, motion, phys.shearForce, phys.moment, phys.bonded);
+	hexmembrane::ContactMemory<Real> memory = phys.memory(geom.normal);
+	memory.forEachTurning([&](Vector3r& load) { geom.rotate(load); });
+	Vector3r spinDifference = Vector3r::Zero();
+	if (hexmembrane::feelsSpin(law) && !phys.bonded)
+		spinDifference = Body::byId(contact.getId2(), scene)->state->angVel - Body::byId(contact.getId1(), scene)->state->angVel;
+	const auto motion = hexmembrane::contactMotion<Real>(geom.penetrationDepth, geom.shearIncrement(), spinDifference, geom.normal, scene->dt);
+	const hexmembrane::ContactStep step = hexmembrane::advanceContact(law, motion, memory, phys.bonded);
+	phys.remember(memory);
 	phys.normalForce = step.normal * geom.normal;
 	if (step.bond == hexmembrane::BondBreak::tension) {
 #pragma omp atomic
@@ -38,7 +38,7 @@ bool Law2_ScGeom_LinearPhys_Linear::advance(const ScGeom& geom, LinearPhys& phys
 #pragma omp atomic
 		shearBreaks++;
 	}
-	if (scene->trackEnergy) book(step, phys);
+	if (scene->trackEnergy) book(step, phys, memory);
 	if (step.open) return false;
 	push(geom, phys, contact);
 	return true;
@@ -69,8 +69,9 @@ void Law2_ScGeom_LinearPhys_Linear::push(const ScGeom& geom, const LinearPhys& p
 	}
 	scene->forces.addForce(id1, -force);
 	scene->forces.addForce(id2, force);
-	scene->forces.addTorque(id1, torque1 - phys.moment);
-	scene->forces.addTorque(id2, torque2 + phys.moment);
+	const Vector3r moment = hexmembrane::momentOf(phys.memory(geom.normal));
+	scene->forces.addTorque(id1, torque1 - moment);
+	scene->forces.addTorque(id2, torque2 + moment);
 }
 
 // YADE makes a name at its first use, which moves the table under the other threads of the interaction loop: all names at once, one thread at a time.
@@ -87,13 +88,13 @@ void Law2_ScGeom_LinearPhys_Linear::nameEnergies()
 	}
 }
 
-void Law2_ScGeom_LinearPhys_Linear::book(const hexmembrane::ContactStep& step, const LinearPhys& phys)
+void Law2_ScGeom_LinearPhys_Linear::book(const hexmembrane::ContactStep& step, const LinearPhys& phys, const hexmembrane::ContactMemory<Real>& memory)
 {
 	int known;
 #pragma omp atomic read
 	known = named;
 	if (!known) nameEnergies();
-	const Real elastic = hexmembrane::contactEnergy(phys.law(), step.normal, phys.shearForce, phys.moment);
+	const Real elastic = hexmembrane::contactEnergy(phys.law(), step.normal, memory);
 	scene->energy->add(elastic, "elastPotential", elasticIndex, /*reset*/ true);
 	size_t w = 0;
 	hexmembrane::ContactWorks::forEach(step.works, [&](const char* name, Real work) {

@@ -16,7 +16,7 @@ private:
 	void pushApart(const ScGeom& geom, const LinearPhys& phys, const Interaction& contact) const;
 	void push(const ScGeom& geom, const LinearPhys& phys, const Interaction& contact) const;
 	void nameEnergies();
-	void book(const hexmembrane::ContactStep& step, const LinearPhys& phys);
+	void book(const hexmembrane::ContactStep& step, const LinearPhys& phys, const hexmembrane::ContactMemory<Real>& memory);
 
 	// Indices of the energies, -1: not named yet.
 	int elasticIndex = -1;

@@ -1,6 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "MemoryOrder.hpp"
 
+#include "compact/BoundaryRegistry.hpp"
 #include "kernels/base/CellGrid.hpp"
 
 #include <core/InteractionContainer.hpp>
@@ -51,8 +52,9 @@ void keepHeld(const shared_ptr<Object>& before, shared_ptr<Object>& now)
 // Shapes that hold no other body: an interaction between them holds none either.
 bool standsAlone(const shared_ptr<Body>& body)
 {
-	static const std::array<const char*, 6> known{"Sphere", "Platen", "CylinderWall", "Wall", "Box", "Facet"};
-	return body && body->shape && std::find(known.begin(), known.end(), body->shape->getClassName()) != known.end();
+	static const std::array<const char*, 4> known{"Sphere", "Wall", "Box", "Facet"};
+	return body && body->shape &&
+	       (BoundaryRegistry::find(*body->shape) || std::find(known.begin(), known.end(), body->shape->getClassName()) != known.end());
 }
 
 } // namespace

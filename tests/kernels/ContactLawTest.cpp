@@ -21,11 +21,12 @@ ContactLaw bondLaw(double tensile, double shear)
 }
 
 struct OneContact {
-	Vec3 shear = Vec3::Zero(), moment = Vec3::Zero();
+	ContactMemory<double> memory = noMemory();
+	Vec3 &shear = memory.shear, &moment = memory.moment;
 	bool bonded = false;
 	ContactStep advance(const ContactLaw& law, double overlap, const Vec3& slide, const Vec3& bend = Vec3::Zero())
 	{
-		return advanceContact(law, {overlap, slide, bend}, shear, moment, bonded);
+		return advanceContact(law, {overlap, slide, bend}, memory, bonded);
 	}
 };
 
@@ -107,7 +108,7 @@ TEST(ContactLaw, WorkIsElasticOrDissipated)
 		dissipated += step.works.slip + step.works.roll;
 		cuts += step.works.slip != 0;
 	}
-	const double elastic = contactEnergy(law, 0, contact.shear, contact.moment);
+	const double elastic = contactEnergy(law, 0, contact.memory);
 	EXPECT_GT(cuts, 500);
 	EXPECT_LT(cuts, 2000);
 	EXPECT_GT(elastic, 0);
@@ -153,7 +154,7 @@ TEST(ContactLaw, FrictionThatIsSwitchedOffDissipatesWhatWasHeld)
 	ContactLaw law = rollingLaw();
 	OneContact contact;
 	contact.advance(law, 1e-5, {1e-6, 0, 0}, {0, 1e-4, 0});
-	const double held = contactEnergy(law, 0, contact.shear, contact.moment);
+	const double held = contactEnergy(law, 0, contact.memory);
 	law.friction = law.rollingArm = 0;
 	const ContactStep step = contact.advance(law, 1e-5, Vec3::Zero());
 	EXPECT_TRUE(contact.shear.isZero(0) && contact.moment.isZero(0));

@@ -59,7 +59,7 @@ double BoundaryContacts::energy(const Boundary& boundary, const std::vector<Plac
 {
 	double sum = 0;
 	forEachTouching([&](int i, const Contact& contact) {
-		sum += contactEnergy(contact.law, contact.law.kn * boundary.shape->touch(places[i]).overlap, contact.memory.shear, contact.memory.moment);
+		sum += contactEnergy(contact.law, contact.law.kn * boundary.shape->touch(places[i]).overlap, contact.memory);
 	});
 	return sum;
 }

@@ -50,7 +50,7 @@ struct BoundaryGeometry {
 	}
 	void act(int c, const Meeting& m, const ContactStep& step, const Contact& contact) const
 	{
-		act(c, m.arm1, m.arm2, step.normal * m.normal + contact.memory.shear, contact.memory.moment, step.normal);
+		act(c, m.arm1, m.arm2, step.normal * m.normal + contact.memory.shear, momentOf(contact.memory), step.normal);
 	}
 
 	HEXMEMBRANE_INLINE bool pick(int c, int end, Batch& batch) const

@@ -5,7 +5,7 @@ namespace hexmembrane {
 
 void ContactStore::start(std::size_t count, const std::vector<PairKind<double>>& kindTable)
 {
-	contacts.assign(count, {noMemory(), {0, 0, 0}});
+	contacts.assign(count, {noMemory(), {}});
 	bits.assign(count, 0);
 	kinds.assign(count, 0);
 	table = kindTable;

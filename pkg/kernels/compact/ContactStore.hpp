@@ -10,17 +10,14 @@
 namespace hexmembrane {
 
 /// A contact as it is stored, one and a half cache lines, or four of them as lanes: a sweep over many contacts waits for memory, so what can be had otherwise
-/// (the parameters of its kind) is not in it. Filled up to rows of four numbers.
+/// (the parameters of its kind) is not in it. The alignment fills it up to whole rows of four numbers.
 template <class V>
-struct StoredContact {
+struct alignas(4 * sizeof(V)) StoredContact {
 	ContactMemory<V> memory;
 	PairSprings<V> springs;
-
-	static constexpr int numbers = 12, rows = numbers / 4;
 };
-static_assert(sizeof(StoredContact<double>) == StoredContact<double>::numbers * sizeof(double) && StoredContact<double>::numbers % 4 == 0,
-              "a contact is read as rows of four doubles");
-static_assert(sizeof(StoredContact<Lanes>) == StoredContact<double>::numbers * sizeof(Lanes), "four contacts are read as lanes in the same order");
+constexpr int rowsOfContact = sizeof(StoredContact<double>) / (4 * sizeof(double));
+static_assert(sizeof(StoredContact<Lanes>) == 4 * rowsOfContact * sizeof(Lanes), "four contacts are read as lanes in the same order");
 
 /// Springs of a pair, and the kind of pair that it is: an index into a table of kinds.
 struct SpringsOfKind {
@@ -62,12 +59,12 @@ struct FourContacts {
 	HEXMEMBRANE_INLINE StoredContact<Lanes> contacts(const ContactStore& store) const
 	{
 		StoredContact<Lanes> four;
-		load(store.contacts.data(), reinterpret_cast<Lanes*>(&four), std::make_integer_sequence<int, StoredContact<double>::rows>());
+		load(store.contacts.data(), reinterpret_cast<Lanes*>(&four), std::make_integer_sequence<int, rowsOfContact>());
 		return four;
 	}
 	HEXMEMBRANE_INLINE void put(const StoredContact<Lanes>& four, ContactStore& store) const
 	{
-		save(reinterpret_cast<const Lanes*>(&four), store.contacts.data(), std::make_integer_sequence<int, StoredContact<double>::rows>());
+		save(reinterpret_cast<const Lanes*>(&four), store.contacts.data(), std::make_integer_sequence<int, rowsOfContact>());
 	}
 	HEXMEMBRANE_INLINE PairKind<Lanes> kinds(const ContactStore& store) const
 	{

@@ -22,7 +22,7 @@ CriticalStep::CriticalStep(const SphereAssembly& flat) : grains(flat.grains())
 		add(i, j, normal, (a.radius - 0.5 * u) * normal, -(b.radius - 0.5 * u) * normal, stickingSprings(contact.law));
 	});
 	flat.smooth.forEachTouching(
-	        flat.places, [&](int i, int j, double kn, double, const Vec3& normal) { add(i, j, normal, Vec3::Zero(), Vec3::Zero(), {kn, 0, 0, 0, 0}); });
+	        flat.places, [&](int i, int j, double kn, double, const Vec3& normal) { add(i, j, normal, Vec3::Zero(), Vec3::Zero(), springsAlone(kn, 0)); });
 	for (std::size_t b = 0; b < flat.boundaries.size(); ++b)
 		flat.boundaryContacts[b].forEachTouching([&](int i, const Contact& contact) {
 			const BoundaryTouch touch = flat.boundaries[b].shape->touch(flat.places[i]);
@@ -33,7 +33,7 @@ CriticalStep::CriticalStep(const SphereAssembly& flat) : grains(flat.grains())
 void CriticalStep::addBond(int first, int second, const Vec3& branch, double kn, double ks)
 {
 	const Vec3 normal = branch.normalized();
-	add(grains + first, grains + second, normal, 0.5 * branch, -0.5 * branch, {kn, ks, 0, 0, 0});
+	add(grains + first, grains + second, normal, 0.5 * branch, -0.5 * branch, springsAlone(kn, ks));
 }
 
 double CriticalStep::compute(double tolerance, int most) const
@@ -66,14 +66,14 @@ double CriticalStep::compute(double tolerance, int most) const
 			f[i] = t[i] = Vec3::Zero();
 		}
 		for (const Spring& s : springs) {
-			Vec3 slide = -x[s.i] - w[s.i].cross(s.arm1), bend = -w[s.i];
+			Vec3 slide = -x[s.i] - w[s.i].cross(s.arm1), turn = -w[s.i];
 			if (s.j >= 0) {
 				slide += x[s.j] + w[s.j].cross(s.arm2);
-				bend += w[s.j];
+				turn += w[s.j];
 			}
 			const double along = s.normal.dot(slide);
 			const Vec3 force = s.law.kn * along * s.normal + s.law.ks * (slide - along * s.normal); // on i, pulling it after j
-			const Vec3 moment = s.law.kr * (bend - s.normal.dot(bend) * s.normal);
+			const Vec3 moment = answerTo(turn, s.law, s.normal);
 			f[s.i] += force;
 			t[s.i] += s.arm1.cross(force) + moment;
 			if (s.j < 0) continue;

@@ -85,7 +85,7 @@ double PairContacts::energy(const std::vector<Place>& places) const
 	double sum = 0;
 	forEachTouching([&](int i, int j, const Contact& contact) {
 		const double u = places[i].radius + places[j].radius - (places[j].centre - places[i].centre).norm();
-		sum += contactEnergy(contact.law, contact.law.kn * u, contact.memory.shear, contact.memory.moment);
+		sum += contactEnergy(contact.law, contact.law.kn * u, contact.memory);
 	});
 	return sum;
 }

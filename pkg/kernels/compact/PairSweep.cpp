@@ -42,8 +42,9 @@ struct PairGeometry {
 	void act(int p, const Meeting& m, const ContactStep& step, const Contact& contact) const
 	{
 		const Vec3 force = step.normal * m.normal + contact.memory.shear;
-		s.loads[s.first[p]] += {-force, -m.arm1.cross(contact.memory.shear) - contact.memory.moment};
-		loadOf(s.second[p]) += {force, m.arm2.cross(contact.memory.shear) + contact.memory.moment};
+		const Vec3 moment = momentOf(contact.memory);
+		s.loads[s.first[p]] += {-force, -m.arm1.cross(contact.memory.shear) - moment};
+		loadOf(s.second[p]) += {force, m.arm2.cross(contact.memory.shear) + moment};
 	}
 
 	HEXMEMBRANE_INLINE bool pick(int p, int end, Batch& batch) const

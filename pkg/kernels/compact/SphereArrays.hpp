@@ -53,7 +53,7 @@ struct Contact {
 	unsigned char bits;
 
 	/// The same contact seen from the other body.
-	Contact swapped() const { return {{-memory.shear, -memory.moment, -memory.normal}, law, bits}; }
+	Contact swapped() const { return {memory.swapped(), law, bits}; }
 	BondStrengths strengths() const { return {law.tensileStrength, law.shearStrength}; }
 	bool bonded() const { return bits & contactBonded; }
 };
@@ -97,8 +97,9 @@ inline ContactStep advanceContact(Contact& contact, const Meeting& meeting, doub
 	bool bonded = contact.bonded();
 	const PairMotion<double> motion = meeting.motion();
 	carry(contact.memory, meeting.normal, motion.spinSum, dt);
-	const Vec3 slide = dt * acrossNormal(motion.velocity, meeting.normal), bend = dt * acrossNormal(motion.spinDifference, meeting.normal);
-	const ContactStep step = advanceContact(contact.law, {meeting.overlap, slide, bend}, contact.memory.shear, contact.memory.moment, bonded);
+	const Vec3 slide = dt * acrossNormal(motion.velocity, meeting.normal);
+	const ContactStep step =
+	        advanceContact(contact.law, contactMotion<double>(meeting.overlap, slide, motion.spinDifference, meeting.normal, dt), contact.memory, bonded);
 	contact.bits = (step.open ? 0 : contactTouching) | (bonded ? contactBonded : 0);
 	return step;
 }

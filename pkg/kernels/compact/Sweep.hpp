@@ -36,15 +36,15 @@ HEXMEMBRANE_INLINE void advanceFour(ContactStore& store, const int* index, FourP
 	const FourContacts at{index};
 	StoredContact<Lanes> contact = at.contacts(store);
 	carry<Lanes>(contact.memory, four.normal, four.motion.spinSum, lanes(dt));
-	const Lanes3 slide = lanes(dt) * acrossNormal(four.motion.velocity, four.normal),
-	             bend = lanes(dt) * acrossNormal(four.motion.spinDifference, four.normal);
+	const Lanes3 slide = lanes(dt) * acrossNormal(four.motion.velocity, four.normal);
 	const UnbondedStep<Lanes> step =
-	        advanceUnbonded<Lanes>(lawOf(contact.springs, at.kinds(store)), four.overlap, slide, bend, contact.memory.shear, contact.memory.moment);
+	        advanceUnbonded<Lanes>(lawOf(contact.springs, at.kinds(store)),
+	                               contactMotion<Lanes>(four.overlap, slide, four.motion.spinDifference, four.normal, lanes(dt)), contact.memory);
 	at.put(contact, store);
 	works.slip += step.slip;
 	works.roll += step.roll;
 	four.shear = contact.memory.shear;
-	four.moment = contact.memory.moment;
+	four.moment = momentOf(contact.memory);
 	four.normalForce = step.normal;
 	unsigned char* const bits = store.bits.data();
 	for (int k = 0; k < 4; ++k) bits[index[k]] = static_cast<unsigned char>(contactTouching + step.open[k]);

@@ -62,12 +62,48 @@ struct ContactLaw : LinearLaw<double> {
 	double shearStrength;   ///< of a bond (N), >= 0 or infinite; PFC: cb_shearf
 };
 
-/// How the two bodies of a contact moved.
-struct ContactMotion {
-	double overlap; ///< u (m) now
-	Vec3 slide;     ///< displacement in the contact plane during the step (m)
-	Vec3 bend;      ///< rotation about axes in the contact plane during the step (rad)
+/// What a contact remembers from step to step.
+template <class V>
+struct ContactMemory {
+	Vector<V> shear;  ///< shear force on body 2 (N)
+	Vector<V> moment; ///< bending moment on it (N m)
+	Vector<V> normal; ///< of the last step
+	/// Names of the members above, in their order: what a saved state is read by.
+	static constexpr const char* fields = "shear moment normal";
+
+	/// Calls visit(load) for each load that turns with the contact plane.
+	template <class Visit>
+	HEXMEMBRANE_INLINE void forEachTurning(Visit&& visit)
+	{
+		visit(shear);
+		visit(moment);
+	}
+	/// The same seen from the other body.
+	ContactMemory swapped() const { return {-shear, -moment, -normal}; }
 };
+inline ContactMemory<double> noMemory() { return {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}; }
+
+/// The moment that the contact transmits besides those of its forces, on body 2 (N m).
+template <class V>
+HEXMEMBRANE_INLINE Vector<V> momentOf(const ContactMemory<V>& memory)
+{
+	return memory.moment;
+}
+
+/// How the two bodies of a contact moved.
+template <class V>
+struct ContactMotion {
+	V overlap;       ///< u (m) now
+	Vector<V> slide; ///< displacement in the contact plane during the step (m)
+	Vector<V> bend;  ///< rotation about axes in the contact plane during the step (rad)
+};
+
+/// The same from the spin of body 2 against body 1 (rad/s) and the present normal.
+template <class V>
+HEXMEMBRANE_INLINE ContactMotion<V> contactMotion(V overlap, const Vector<V>& slide, const Vector<V>& spinDifference, const Vector<V>& normal, V dt)
+{
+	return {overlap, slide, dt * acrossNormal(spinDifference, normal)};
+}
 
 enum class BondBreak { none, tension, shear };
 
@@ -130,10 +166,19 @@ inline Vec3 cutTo(const Vec3& v, double limit)
 inline double springEnergy(double squaredLoad, double stiffness) { return stiffness > 0 ? 0.5 * squaredLoad / stiffness : 0; }
 
 /// Elastic energy of a contact (J).
-inline double contactEnergy(const ContactLaw& law, double normal, const Vec3& shear, const Vec3& moment)
+inline double contactEnergy(const ContactLaw& law, double normal, const ContactMemory<double>& memory)
 {
-	return springEnergy(normal * normal, law.kn) + springEnergy(shear.squaredNorm(), law.ks) + springEnergy(moment.squaredNorm(), law.kr);
+	return springEnergy(normal * normal, law.kn) + springEnergy(memory.shear.squaredNorm(), law.ks) + springEnergy(memory.moment.squaredNorm(), law.kr);
 }
+
+/// Whether the step of an unbonded contact depends on how its bodies turn, apart from the slide that this makes.
+inline bool feelsSpin(const ContactLaw& law) { return law.kr > 0; }
+
+/// Springs of normal and shear alone.
+inline LinearLaw<double> springsAlone(double kn, double ks) { return {kn, ks, 0, 0, 0}; }
+
+/// Moment by which the springs of a contact that sticks answer a rotation of body 2 against body 1 (N m), on body 1.
+inline Vec3 answerTo(const Vec3& turn, const LinearLaw<double>& law, const Vec3& normal) { return law.kr * acrossNormal(turn, normal); }
 
 /// The springs of a contact that sticks, as the critical time step counts them: one that friction can hold nothing of is none.
 inline LinearLaw<double> stickingSprings(const ContactLaw& law)
@@ -150,8 +195,9 @@ inline BondBreak bondBreak(const ContactLaw& law, double normal, const Vec3& she
 
 /// Step of a bonded contact: N = kn u of either sign, shear elastic without slip, no moment (what rolling left from before is let go). A break in tension takes
 /// all forces; one in shear leaves them in compression, as far as friction holds (from then on the contact is an unbonded one), and takes them in tension.
-inline ContactStep advanceBond(const ContactLaw& law, const ContactMotion& motion, Vec3& shear, Vec3& moment, bool& bonded)
+inline ContactStep advanceBond(const ContactLaw& law, const ContactMotion<double>& motion, ContactMemory<double>& memory, bool& bonded)
 {
+	Vec3 &shear = memory.shear, &moment = memory.moment;
 	ContactStep step{law.kn * motion.overlap, false, BondBreak::none, {}};
 	step.works.roll = springEnergy(moment.squaredNorm(), law.kr);
 	moment = Vec3::Zero();
@@ -219,23 +265,22 @@ struct UnbondedStep {
 	V slip, roll; ///< as in ContactWorks (J)
 };
 
-/// One step of an unbonded contact. `shear` (N) and `moment` (N m) come already carried() into the present contact plane and go out advanced:
+/// One step of an unbonded contact. What it remembers comes already carried() into the present contact plane and goes out advanced:
 ///   N = kn u, no tension: u < 0 opens the contact
 ///   shear  -> shear - ks slide,   cut to mu N
 ///   moment -> moment - kr bend,   cut to mu_r Rbar N
 template <class V>
-HEXMEMBRANE_INLINE UnbondedStep<V> advanceUnbonded(const LinearLaw<V>& law, V overlap, const Vector<V>& slide, const Vector<V>& bend, Vector<V>& shear,
-                                                   Vector<V>& moment)
+HEXMEMBRANE_INLINE UnbondedStep<V> advanceUnbonded(const LinearLaw<V>& law, const ContactMotion<V>& motion, ContactMemory<V>& memory)
 {
 	const V nothing = constant<V>(0);
-	const Mask<V> open = overlap < 0;
-	UnbondedStep<V> step{open ? nothing : law.kn * overlap, open, nothing, nothing};
-	const SpringTrial<V> slip(shear, slide, law.ks, law.friction * step.normal, open);
-	const SpringTrial<V> roll(moment, bend, law.kr, law.rollingArm * step.normal, open);
+	const Mask<V> open = motion.overlap < 0;
+	UnbondedStep<V> step{open ? nothing : law.kn * motion.overlap, open, nothing, nothing};
+	const SpringTrial<V> slip(memory.shear, motion.slide, law.ks, law.friction * step.normal, open);
+	const SpringTrial<V> roll(memory.moment, motion.bend, law.kr, law.rollingArm * step.normal, open);
 	if constexpr (std::is_same<V, double>::value) // roots and quotients are for the few that slide
 		if (slip.elastic() && roll.elastic()) {
-			shear = slip.trial;
-			moment = roll.trial;
+			memory.shear = slip.trial;
+			memory.moment = roll.trial;
 			return step;
 		}
 	V perShear = squareRoot(slip.square), perMoment = squareRoot(roll.square), perKs = law.ks, perKr = law.kr;
@@ -245,29 +290,18 @@ HEXMEMBRANE_INLINE UnbondedStep<V> advanceUnbonded(const LinearLaw<V>& law, V ov
 		if (!(law.ks > 0)) perKs = 0;
 		if (!(law.kr > 0)) perKr = 0;
 	}
-	step.slip = slip.keep(perShear, perKs, shear);
-	step.roll = roll.keep(perMoment, perKr, moment);
+	step.slip = slip.keep(perShear, perKs, memory.shear);
+	step.roll = roll.keep(perMoment, perKr, memory.moment);
 	return step;
 }
 
 /// One step of a contact, as advanceUnbonded(), or as advanceBond() when it is bonded; `bonded` is cleared when a bond breaks.
-inline ContactStep advanceContact(const ContactLaw& law, const ContactMotion& motion, Vec3& shear, Vec3& moment, bool& bonded)
+inline ContactStep advanceContact(const ContactLaw& law, const ContactMotion<double>& motion, ContactMemory<double>& memory, bool& bonded)
 {
-	if (bonded) return advanceBond(law, motion, shear, moment, bonded);
-	const UnbondedStep<double> step = advanceUnbonded<double>(law, motion.overlap, motion.slide, motion.bend, shear, moment);
+	if (bonded) return advanceBond(law, motion, memory, bonded);
+	const UnbondedStep<double> step = advanceUnbonded<double>(law, motion, memory);
 	return {step.normal, step.open, BondBreak::none, {step.slip, step.roll, 0}};
 }
-
-/// What a contact remembers from step to step.
-template <class V>
-struct ContactMemory {
-	Vector<V> shear;  ///< shear force on body 2 (N)
-	Vector<V> moment; ///< bending moment on it (N m)
-	Vector<V> normal; ///< of the last step
-	/// Names of the vectors above, in their order: what a saved state is read by.
-	static constexpr const char* fields = "shear moment normal";
-};
-inline ContactMemory<double> noMemory() { return {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}; }
 
 /// What is left when springs were taken away: a spring without stiffness holds nothing.
 inline ContactMemory<double> withoutLostSprings(ContactMemory<double> memory, const LinearLaw<double>& law)
@@ -298,8 +332,7 @@ template <class V>
 HEXMEMBRANE_INLINE void carry(ContactMemory<V>& memory, const Vector<V>& normal, const Vector<V>& spinSum, V dt)
 {
 	const Vector<V> tilt = cross(memory.normal, normal), twist = (0.5 * dt * dot(memory.normal, spinSum)) * memory.normal;
-	memory.shear = carried(memory.shear, tilt, twist);
-	memory.moment = carried(memory.moment, tilt, twist);
+	memory.forEachTurning([&](Vector<V>& load) __attribute__((always_inline)) { load = carried(load, tilt, twist); });
 	memory.normal = normal;
 }
 

@@ -96,15 +96,16 @@ void GrainAssembly::computeForces()
 			const Vec3 n = d / dist, velocity = v[j] - v[i] - (armI * w[i] + armJ * w[j]).cross(n);
 			ContactMemory<double>& memory = memories[k];
 			carry<double>(memory, n, w[i] + w[j], timeStep);
-			const Vec3 slide = timeStep * acrossNormal(velocity, n), bend = timeStep * acrossNormal(w[j] - w[i], n);
-			const UnbondedStep<double> step = advanceUnbonded<double>(lawOf(r[i], r[j]), overlap, slide, bend, memory.shear, memory.moment);
+			const Vec3 slide = timeStep * acrossNormal(velocity, n);
+			const UnbondedStep<double> step =
+			        advanceUnbonded<double>(lawOf(r[i], r[j]), contactMotion<double>(overlap, slide, w[j] - w[i], n, timeStep), memory);
 			if (step.slip > 0) ++slidingCount;
 			const double normal = step.normal;
-			const Vec3 onJ = normal * n + memory.shear, turn = n.cross(memory.shear);
+			const Vec3 onJ = normal * n + memory.shear, turn = n.cross(memory.shear), moment = momentOf(memory);
 			f[i] -= onJ;
 			f[j] += onJ;
-			t[i] -= armI * turn + memory.moment;
-			t[j] -= armJ * turn - memory.moment;
+			t[i] -= armI * turn + moment;
+			t[j] -= armJ * turn - moment;
 			sumForce += normal;
 			++contactCount;
 			++touching[i];
