@@ -10,7 +10,7 @@ using namespace hexmembrane;
 constexpr double inf = std::numeric_limits<double>::infinity();
 
 // kn, ks, mu, kr, mu_r Rbar, bond strengths
-ContactLaw rollingLaw() { return {1e5, 4e4, 0.4, 0.04, 2e-4, 0, 0}; }
+ContactLaw rollingLaw() { return {{1e5, 4e4, 0.4, 0.04, 2e-4}, 0, 0}; }
 
 ContactLaw bondLaw(double tensile, double shear)
 {
