@@ -161,7 +161,6 @@ void PlatenDrive::action() { stepOverBodies(*this); }
 void PlatenDrive::step(StepView& view)
 {
 	State& state = requirePlaten();
-	requireSettings();
 	const Vector3r unit = direction.normalized();
 	const Real newTarget = target(static_cast<const Platen&>(*Body::byId(platen, scene)->shape));
 	const ContactSums met = view.contacts(platen);

@@ -91,7 +91,6 @@ void RadialWallServo::action() { stepOverBodies(*this); }
 void RadialWallServo::step(StepView& view)
 {
 	CylinderWall& shape = requireWall();
-	requireSettings();
 	const ContactSums met = view.contacts(wall);
 	if (!met.silent.empty())
 		throw std::runtime_error("RadialWallServo.wall: contacts of " + met.silent +

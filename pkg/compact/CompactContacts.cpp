@@ -131,7 +131,8 @@ vector<Vector3r> CompactLoop::contactForces(const HexMembrane& membrane) const
 {
 	if (state->sheet.membrane != &membrane)
 		throw std::runtime_error("CompactLoop: this membrane is not one that it steps; fix: MembraneBonds of this membrane in CompactLoop.engines");
-	return state->contactForces(lastInstant().places, stepShapes);
+	const Instant then = lastInstant();
+	return state->contactForces(then.places, then.shapes);
 }
 
 void CompactLoop::exportContacts()

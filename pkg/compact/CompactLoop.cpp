@@ -264,17 +264,21 @@ void CompactLoop::moveSheet()
 	}
 	if (lost >= 0) stopLost(spheres.id[grains + lost]);
 	spheres.noteWay(state->motion.fastest * lastDt);
-	// works up to the present positions; a meter may have several terms
-	std::map<WorkMeter*, hexmembrane::MembraneMotion::HalfWorks> works;
-	const auto add = [&](WorkMeter* meter, const hexmembrane::MembraneMotion::HalfWorks& halves) {
-		if (!meter) return;
-		works[meter].before += halves.before;
-		works[meter].after += halves.after;
-		works[meter].atOnce += halves.atOnce;
-	};
-	for (size_t t = 0; t < terms.size(); ++t) add(meters[t], terms[t].work);
-	for (size_t g = 0; g < grips.size(); ++g) add(gripMeters[g], grips[g].work);
-	for (const auto& [meter, halves] : works) meter->add(scene->iter, halves);
+	addWorks(terms, meters);
+	addWorks(grips, gripMeters);
+}
+
+// Works up to the present positions. What belongs to one meter stands together.
+template <typename Part>
+void CompactLoop::addWorks(const vector<Part>& parts, const vector<WorkMeter*>& owners)
+{
+	hexmembrane::MembraneMotion::HalfWorks sum;
+	for (size_t p = 0; p < parts.size(); ++p) {
+		sum += parts[p].work;
+		if (p + 1 < parts.size() && owners[p + 1] == owners[p]) continue;
+		if (owners[p]) owners[p]->add(scene->iter, sum);
+		sum = {};
+	}
 }
 
 // As NewtonIntegrator moves blocked bodies: at the velocities that they were given.

@@ -37,6 +37,8 @@ private:
 	void step(bool last);
 	void moveAll();
 	void moveSheet();
+	template <typename Part>
+	void addWorks(const vector<Part>& parts, const vector<WorkMeter*>& owners);
 	void moveBoundaries();
 	void bookEnergies(Real elastic);
 	[[noreturn]] void stopLost(Body::id_t id);

@@ -30,6 +30,7 @@ void CompactLoop::collect(const Sheet& sheet)
 	for (const KeptContact& contact : kept) next->requirePlace(contact);
 	for (const KeptContact& contact : kept) next->put(contact);
 	state = std::move(next);
+	stepShapes.clear();
 	contactFields.clear(); // what was loaded is of use once
 }
 

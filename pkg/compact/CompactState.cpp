@@ -167,7 +167,8 @@ bool CompactState::refresh(const Scene& scene, const Sheet& now, int threads)
 			const int next = spheres.id[i + ahead];
 			__builtin_prefetch(&marks[next].inertia);
 			__builtin_prefetch(&marks[next]);
-			if (const Body* b = livingBody(bodies, next)) __builtin_prefetch(&static_cast<const Sphere*>(b->shape.get())->radius);
+			const Body* b = livingBody(bodies, next);
+			if (b && b->shape) __builtin_prefetch(&static_cast<const Sphere*>(b->shape.get())->radius);
 		}
 		const Body* b = livingBody(bodies, spheres.id[i]);
 		if (!b || !marks[spheres.id[i]].holds(*b)) {
@@ -179,8 +180,8 @@ bool CompactState::refresh(const Scene& scene, const Sheet& now, int threads)
 		spheres.places[i].centre = state.se3.position;
 		spheres.motions[i] = {state.vel, state.angVel};
 	}
+	spheres.noteWay(std::sqrt(way2)); // by a script; it counts also where what else has changed is refused, and put right later
 	if (changed > 0) return false;
-	spheres.noteWay(std::sqrt(way2)); // by a script
 	for (size_t b = 0; b < boundaryIds.size(); ++b) {
 		BodyMark& mark = marks[boundaryIds[b]];
 		const Body& body = *bodies[boundaryIds[b]];

@@ -34,7 +34,7 @@ void WorkMeter::takeOver(long iter, const vector<Vector3r>& forces, const std::f
 
 void WorkMeter::add(long iter, vector<Vector3r>& forces, vector<Vector3r>& positions, Real atOnce)
 {
-	work += hexmembrane::WorkMeter{lastIter, lastForces, lastPositions}.record(iter, forces, positions) + atOnce;
+	work += hexmembrane::TrapezoidalRecord{lastIter, lastForces, lastPositions}.record(iter, forces, positions) + atOnce;
 	ahead = 0;
 }
 

@@ -11,6 +11,28 @@
 
 namespace yade {
 
+namespace {
+
+//! Calls visit(geom, phys) for each contact of a body. \return class of a contact that does not tell its normal and stiffness, which is left out; "": none
+template <typename Visit>
+string forEachContact(const Body& body, Visit&& visit)
+{
+	string silent;
+	for (const auto& entry : body.intrs) {
+		const Interaction& contact = *entry.second;
+		if (!contact.isReal()) continue;
+		const auto* geom = dynamic_cast<const GenericSpheresContact*>(contact.geom.get());
+		const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
+		if (geom && phys)
+			visit(*geom, *phys);
+		else
+			silent = contact.phys->getClassName();
+	}
+	return silent;
+}
+
+} // namespace
+
 void Stepped::stepOverBodies(GlobalEngine& self)
 {
 	Scene& scene = *self.scene;
@@ -58,13 +80,11 @@ void BodyView::refresh(const Sheet& sheet)
 	sheet.membrane->gather(scene, who, *sheet.position);
 	if (!sheet.spin) return;
 	const int n = sheet.stencil.perRing;
-#pragma omp parallel for schedule(static)
+	forEachState(*scene.bodies, *sheet.ids, [&](int i, const State& state) { // they all live: gather() has looked
+		sheet.velocity->set(i / n, i % n, state.vel);
+		sheet.spin->set(i / n, i % n, state.angVel);
+	});
 	for (int k = 0; k < sheet.stencil.rings; ++k) {
-		for (int i = 0; i < n; ++i) {
-			const State& state = *(*scene.bodies)[(*sheet.ids)[k * n + i]]->state;
-			sheet.velocity->set(k, i, state.vel);
-			sheet.spin->set(k, i, state.angVel);
-		}
 		sheet.velocity->wrap(k);
 		sheet.spin->wrap(k);
 	}
@@ -124,38 +144,25 @@ ContactSums BodyView::contacts(Body::id_t boundary)
 	scene.forces.sync();
 	ContactSums sums;
 	sums.force = scene.forces.getForce(boundary);
-	for (const auto& entry : (*scene.bodies)[boundary]->intrs) {
-		const Interaction& contact = *entry.second;
-		if (!contact.isReal()) continue;
+	sums.silent = forEachContact(*(*scene.bodies)[boundary], [&](const GenericSpheresContact& geom, const NormPhys& phys) {
 		++sums.count;
-		const auto* geom = dynamic_cast<const GenericSpheresContact*>(contact.geom.get());
-		const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
-		if (!geom || !phys) {
-			sums.silent = contact.phys->getClassName();
-			continue;
-		}
-		sums.normalForce += phys->normalForce.dot(geom->normal);
-		sums.normalStiffness += phys->kn;
-	}
+		sums.normalForce += phys.normalForce.dot(geom.normal);
+		sums.normalStiffness += phys.kn;
+	});
 	return sums;
 }
 
 Real BodyView::stiffness(Body::id_t boundary, const Vector3r& along)
 {
 	Real sum = 0;
-	for (const auto& entry : (*scene.bodies)[boundary]->intrs) {
-		const Interaction& contact = *entry.second;
-		if (!contact.isReal()) continue;
-		const auto* geom = dynamic_cast<const GenericSpheresContact*>(contact.geom.get());
-		const auto* phys = dynamic_cast<const NormPhys*>(contact.phys.get());
-		if (!geom || !phys)
-			throw std::runtime_error(
-			        who + ": contacts of " + contact.phys->getClassName() +
-			        " do not tell their stiffness; fix: a contact law whose IPhys derives from NormPhys, or give contactStiffness in N/m");
-		const auto* shear = dynamic_cast<const NormShearPhys*>(phys);
-		const Real cosine = geom->normal.dot(along), squared = cosine * cosine;
-		sum += phys->kn * squared + (shear ? shear->ks * (1 - squared) : 0);
-	}
+	const string silent = forEachContact(*(*scene.bodies)[boundary], [&](const GenericSpheresContact& geom, const NormPhys& phys) {
+		const auto* shear = dynamic_cast<const NormShearPhys*>(&phys);
+		const Real cosine = geom.normal.dot(along), squared = cosine * cosine;
+		sum += phys.kn * squared + (shear ? shear->ks * (1 - squared) : 0);
+	});
+	if (!silent.empty())
+		throw std::runtime_error(who + ": contacts of " + silent +
+		                         " do not tell their stiffness; fix: a contact law whose IPhys derives from NormPhys, or give contactStiffness in N/m");
 	return sum;
 }
 

@@ -93,13 +93,10 @@ void MembranePressure::stepMesh()
 {
 	const int count = static_cast<int>(vertexIds.size());
 	positions.resize(count);
-	for (int i = 0; i < count; ++i) {
-		const Body* b = livingBody(*scene->bodies, vertexIds[i]);
-		if (!b)
-			throw std::runtime_error("MembranePressure: body " + std::to_string(vertexIds[i]) + " of the loaded surface is gone (iteration " +
-			                         std::to_string(scene->iter) + "); fix: do not erase it, or load the last checkpoint");
-		positions[i] = b->state->se3.position;
-	}
+	const int missing = forEachState(*scene->bodies, vertexIds, [&](int i, const State& state) { positions[i] = state.se3.position; });
+	if (missing >= 0)
+		throw std::runtime_error("MembranePressure: body " + std::to_string(vertexIds[missing]) + " of the loaded surface is gone (iteration " +
+		                         std::to_string(scene->iter) + "); fix: do not erase it, or load the last checkpoint");
 	mesh.compute(pressure, positions, force);
 	for (int i = 0; i < count; ++i) {
 		if (!isFinite(force[i])) throwNotFinite("MembranePressure: force", vertexIds[i], *scene);

@@ -49,7 +49,7 @@ privateApt() {
 	mkdir -p "$folder"/{state/lists/partial,cache/archives/partial,none/partial,etc/apt.conf.d,etc/preferences.d}
 	export APT_CONFIG=$folder/apt.conf
 	{
-		# the way to the network is the system's: proxies, certificates, passwords of mirrors
+		# The way to the network is the system's: proxies, certificates, passwords of mirrors. Most systems set none of it: no line is no error.
 		env -u APT_CONFIG apt-config dump 2>/dev/null | grep -E '^Acquire::https?::' || true
 		cat <<-END
 			APT::Architecture "amd64";
@@ -103,6 +103,7 @@ fetchYadeSource() {
 	if ! sumIsRight; then
 		say "downloading YADE's sources ($((size / 1000000)) MB)"
 		rm -f "$yadeTarball"
+		# apt-get may fail on what is no matter here (signature of the .dsc, say): what counts is the sum of the file, asked next
 		(cd "$folder" && apt-get -q=2 source --download-only yade) >"$folder/log" 2>&1 || true
 		sumIsRight || die "YADE's sources could not be downloaded from ${uri//\'/}" "the output of apt-get: $folder/log"
 	fi

@@ -11,6 +11,7 @@ rootHash() { { echo "$rootRecipe $yadeVersion" && listOf packages && listOf root
 # Removes a tree that packages were unpacked into: some of their folders may not be writable.
 removeTree() {
 	[[ -e $1 ]] || return 0
+	# what chmod cannot open, rm reports: its error is the one to see
 	chmod -R u+rwX "$1" 2>/dev/null || true
 	rm -rf "$1"
 }
@@ -113,6 +114,7 @@ unpackPackages() {
 	say "downloading and unpacking $count packages ($((total / 1000000)) MB)"
 	apt-get -q=2 -y --download-only install "${packages[@]}" >"$apt/log" 2>&1 &
 	local apt_pid=$! running=1 told=$SECONDS
+	# At the end apt-get has finished and there is nobody to kill: no error. Expanded now: apt_pid is local.
 	# shellcheck disable=SC2064
 	trap "kill $apt_pid 2>/dev/null || true" EXIT
 	# Links that packages with old paths must find: /lib/... lies in /usr/lib/...

@@ -130,6 +130,7 @@ runBeside() {
 }
 
 # Bubblewrap has exactly one child, the command; without it (natively) the process is the command itself.
+# The command may end between the look and the signal: then there is nobody to tell, and the caller's wait gives its status.
 terminate() {
 	local target=$1
 	[[ $host == native ]] || read -r target _ <"/proc/$1/task/$1/children" || true

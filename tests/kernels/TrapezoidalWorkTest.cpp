@@ -15,7 +15,7 @@ struct Springs {
 	{
 		std::vector<Vec3> force, position = x;
 		for (const Vec3& p : x) force.push_back(-p);
-		return WorkMeter{lastStep, lastForce, lastPosition}.record(step, force, position);
+		return TrapezoidalRecord{lastStep, lastForce, lastPosition}.record(step, force, position);
 	}
 };
 
@@ -28,7 +28,7 @@ double energy(const std::vector<Vec3>& x)
 
 } // namespace
 
-TEST(WorkMeter, isTheEnergyThatLinearSpringsLose)
+TEST(TrapezoidalRecord, isTheEnergyThatLinearSpringsLose)
 {
 	Springs springs;
 	double work = 0;
@@ -42,7 +42,7 @@ TEST(WorkMeter, isTheEnergyThatLinearSpringsLose)
 	EXPECT_NEAR(work, energy(support::randomVectors(7, 1, 100)) - energy(x), 1e-14);
 }
 
-TEST(WorkMeter, aGapIsNobodysWork)
+TEST(TrapezoidalRecord, aGapIsNobodysWork)
 {
 	Springs springs;
 	const auto a = support::randomVectors(7, 1, 1), b = support::randomVectors(7, 1, 2), c = support::randomVectors(7, 1, 3);
@@ -54,7 +54,7 @@ TEST(WorkMeter, aGapIsNobodysWork)
 	EXPECT_EQ(springs.at(0, c), 0) << "back to the start";
 }
 
-TEST(WorkMeter, otherPointsStartAnew)
+TEST(TrapezoidalRecord, otherPointsStartAnew)
 {
 	Springs springs;
 	springs.at(0, support::randomVectors(7, 1, 1));

@@ -18,8 +18,8 @@ inline double trapezoidalWork(const std::vector<Vec3>& force0, const std::vector
 	return work;
 }
 
-/// Meter of the work of point forces over the steps of a run. What it remembers of the last step is the caller's, who saves it.
-struct WorkMeter {
+/// Work of point forces over the steps of a run, one step after the other. What it remembers of the last step is the caller's, who saves it.
+struct TrapezoidalRecord {
 	long& lastStep;
 	std::vector<Vec3>& lastForce;
 	std::vector<Vec3>& lastPosition;

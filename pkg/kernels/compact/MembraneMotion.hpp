@@ -17,6 +17,14 @@ public:
 	struct HalfWorks {
 		double before = 0, after = 0;
 		double atOnce = 0; ///< of bringing what is gripped to its speed
+
+		HalfWorks& operator+=(const HalfWorks& other)
+		{
+			before += other.before;
+			after += other.after;
+			atOnce += other.atOnce;
+			return *this;
+		}
 	};
 
 	/// Forces on the rings first .. last, besides contacts.

@@ -91,7 +91,7 @@ struct Meeting {
 	}
 };
 
-/// One step of a contact, bonded or not. \return normal force (N), 0 when it has opened
+/// One step of a contact, bonded or not: what it remembers is carried, then advanced, and its bits follow.
 inline ContactStep advanceContact(Contact& contact, const Meeting& meeting, double dt)
 {
 	bool bonded = contact.bonded();

@@ -223,27 +223,24 @@ template <class V>
 struct SpringTrial {
 	Vector<V> before, trial;
 	V square, limit;
-	Mask<V> open, gone, cut;
+	Mask<V> open, cut;
 
 	HEXMEMBRANE_INLINE SpringTrial(const Vector<V>& load, const Vector<V>& displacement, V stiffness, V most, Mask<V> opened)
-	    : before(load), trial(load - stiffness * displacement), square(dot(trial, trial)), limit(most), open(opened), gone(opened),
-	      cut(square > most * most)
+	    : before(load), trial(load - stiffness * displacement), square(dot(trial, trial)), limit(most), open(opened), cut(square > most * most)
 	{
-		if constexpr (std::is_same<V, double>::value) gone = opened || !(stiffness > 0);
 	}
-	/// The second half. A contact that opens, and a spring without stiffness, hold nothing (what is stored for lanes never has a load on such a spring, see
-	/// withoutLostSprings()). \param perSize 1/|trial| \param perStiffness 1/stiffness; of no consequence for a spring without load
+	/// The second half. A contact that opens holds nothing. \param perSize 1/|trial| \param perStiffness 1/stiffness; of no consequence for a spring without load
 	/// \return work dissipated, (before + kept)/2 . (trial - kept)/stiffness: what is done on the spring by the trapezoidal rule less its gain in elastic
 	/// energy (PFC's definition); of one that opens, what it held.
 	HEXMEMBRANE_INLINE V keep(V perSize, V perStiffness, Vector<V>& load) const
 	{
-		const V nothing = constant<V>(0), share = gone ? nothing : (cut ? limit * perSize : constant<V>(1));
+		const V nothing = constant<V>(0), share = open ? nothing : (cut ? limit * perSize : constant<V>(1));
 		load = share * trial;
 		const Vector<V> sum = before + load, lost = trial - load;
 		return 0.5 * perStiffness * (open ? dot(before, before) : (cut ? dot(sum, lost) : nothing));
 	}
 	/// Of one contact: trial and limit are all there is to it.
-	bool elastic() const { return !cut && (!gone || square == 0); }
+	bool elastic() const { return !cut && (!open || square == 0); }
 };
 
 /// 1/a and 1/b by one quotient: it takes as long as ten products. Both are taken as 1e-100 at least.
@@ -265,7 +262,8 @@ struct UnbondedStep {
 	V slip, roll; ///< as in ContactWorks (J)
 };
 
-/// One step of an unbonded contact. What it remembers comes already carried() into the present contact plane and goes out advanced:
+/// One step of an unbonded contact. What it remembers comes already carried() into the present contact plane, without loads on springs that are not there (see
+/// withoutLostSprings()), and goes out advanced:
 ///   N = kn u, no tension: u < 0 opens the contact
 ///   shear  -> shear - ks slide,   cut to mu N
 ///   moment -> moment - kr bend,   cut to mu_r Rbar N
@@ -286,21 +284,9 @@ HEXMEMBRANE_INLINE UnbondedStep<V> advanceUnbonded(const LinearLaw<V>& law, cons
 	V perShear = squareRoot(slip.square), perMoment = squareRoot(roll.square), perKs = law.ks, perKr = law.kr;
 	invert(perShear, perMoment);
 	invert(perKs, perKr);
-	if constexpr (std::is_same<V, double>::value) { // a script may take a spring away while it holds something
-		if (!(law.ks > 0)) perKs = 0;
-		if (!(law.kr > 0)) perKr = 0;
-	}
 	step.slip = slip.keep(perShear, perKs, memory.shear);
 	step.roll = roll.keep(perMoment, perKr, memory.moment);
 	return step;
-}
-
-/// One step of a contact, as advanceUnbonded(), or as advanceBond() when it is bonded; `bonded` is cleared when a bond breaks.
-inline ContactStep advanceContact(const ContactLaw& law, const ContactMotion<double>& motion, ContactMemory<double>& memory, bool& bonded)
-{
-	if (bonded) return advanceBond(law, motion, memory, bonded);
-	const UnbondedStep<double> step = advanceUnbonded<double>(law, motion, memory);
-	return {step.normal, step.open, BondBreak::none, {step.slip, step.roll, 0}};
 }
 
 /// What is left when springs were taken away: a spring without stiffness holds nothing.
@@ -309,6 +295,15 @@ inline ContactMemory<double> withoutLostSprings(ContactMemory<double> memory, co
 	if (!(law.ks > 0)) memory.shear = Vec3::Zero();
 	if (!(law.kr > 0)) memory.moment = Vec3::Zero();
 	return memory;
+}
+
+/// One step of a contact, as advanceUnbonded(), or as advanceBond() when it is bonded; `bonded` is cleared when a bond breaks.
+inline ContactStep advanceContact(const ContactLaw& law, const ContactMotion<double>& motion, ContactMemory<double>& memory, bool& bonded)
+{
+	memory = withoutLostSprings(memory, law); // a script may take a spring away while it holds something
+	if (bonded) return advanceBond(law, motion, memory, bonded);
+	const UnbondedStep<double> step = advanceUnbonded<double>(law, motion, memory);
+	return {step.normal, step.open, BondBreak::none, {step.slip, step.roll, 0}};
 }
 
 /// What the springs held that withoutLostSprings() takes away (J), by the law that they had.

@@ -68,6 +68,14 @@ void GrainAssembly::addWalls(std::size_t i)
 	}
 }
 
+void GrainAssembly::setFriction(double friction, double rollingFriction)
+{
+	law.friction = friction;
+	law.rollingFriction = rollingFriction;
+	const LinearLaw<double> any = lawOf(1, 1); // which springs there are is the same for all contacts
+	for (ContactMemory<double>& memory : memories) memory = withoutLostSprings(memory, any);
+}
+
 LinearLaw<double> GrainAssembly::lawOf(double r1, double r2) const
 {
 	const double lever = rollingRadius(r1, r2), kn = 2 * law.modulus * lever, ks = kn / law.stiffnessRatio;

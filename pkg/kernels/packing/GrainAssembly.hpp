@@ -31,11 +31,7 @@ public:
 	/// One step; radii grow by `growth` times their size in it.
 	void step(double growth);
 
-	void setFriction(double friction, double rollingFriction)
-	{
-		law.friction = friction;
-		law.rollingFriction = rollingFriction;
-	}
+	void setFriction(double friction, double rollingFriction);
 	double friction() const { return law.friction; }
 	double factor() const { return size; }
 
