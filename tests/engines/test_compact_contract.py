@@ -283,21 +283,26 @@ def test_aRefusedBodyLosesNoContacts(O, case):
 
 
 def test_aMoveBesideARefusedChangeIsSeen(O):
-	"""A script brings a grain from afar into contact, and makes a change that is refused, between the same two iterations."""
+	"""A script brings a grain from afar into contact, and makes a change that is refused, between the same two iterations.
+
+	The oracle is the compact tier without the refused change: the reference tier's collider goes by velocities and sees such a move late.
+	"""
 	found = []
-	for tier in ("reference", "compact"):
-		scene = Scene("wall", tier)
+	for refused in (False, True):
+		scene = Scene("wall", "compact")
 		place, gap = widestGap()
 		moved = O.bodies[O.bodies.append(utils.sphere((0, 0, 0.5), gap + 1e-5, material="grain"))]
 		start = places()
 		run(BEFORE)
 		moved.state.pos = place
-		if tier == "compact":
+		if refused:
 			undo = Put("grain", "mask", 4)(scene)
 			with pytest.raises((RuntimeError, ValueError), match="fix: "):
 				O.step()
 			undo()
-		run(AFTER)
+		O.step()
+		assert loop().listsMade == 2, "a grain that comes from afar is on no list"
+		run(AFTER - SUBSTEPS)
 		found.append(results(scene, start))
 	assert np.abs(found[0]["velocity"][-1]).max() > 1e-3, "the grain has met no other"
-	assert not beyond(differences(*found))
+	assert all((found[0][name] == found[1][name]).all() for name in found[0])
