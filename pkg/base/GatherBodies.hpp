@@ -23,6 +23,9 @@ inline void prefetchAhead(const BodyContainer& bodies, const vector<Body::id_t>&
 	if (const Body* b = livingBody(bodies, ids[i + ahead])) __builtin_prefetch(&b->state->se3.position);
 }
 
+//! What ``O`` is in Python.
+inline Scene& currentScene() { return *Omega::instance().getScene(); }
+
 //! Calls take(i, state) for the body of every id, in parallel. Returns an index whose body is gone, -1: none; exceptions must not leave a parallel loop.
 template <typename Take>
 int forEachState(const BodyContainer& bodies, const vector<Body::id_t>& ids, Take&& take)

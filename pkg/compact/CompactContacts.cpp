@@ -135,6 +135,12 @@ vector<Vector3r> CompactLoop::contactForces(const HexMembrane& membrane) const
 	return state->contactForces(then.places, then.shapes);
 }
 
+void CompactLoop::forEachContact(const VisitContact& visit) const
+{
+	const Instant then = lastInstant();
+	state->visitContacts(then.places, then.shapes, visit);
+}
+
 void CompactLoop::exportContacts()
 {
 	requireRun("exportContacts");
@@ -161,16 +167,8 @@ void CompactLoop::exportContacts()
 	};
 	const Instant then = lastInstant();
 	const auto& places = then.places;
-	const auto writeSpheres = [&](int i, int j, const Contact& contact) {
-		const auto &a = places[i], &b = places[j];
-		const Vector3r branch = b.centre - a.centre;
-		const Real distance = branch.norm(), u = a.radius + b.radius - distance;
-		const Vector3r normal = branch / distance;
-		write(spheres.id[i], spheres.id[j], contact, true, {u, normal, a.centre + (a.radius - 0.5 * u) * normal}, a.radius, b.radius);
-	};
-	spheres.contacts.forEachTouching(writeSpheres);
-	spheres.smooth.forEachTouching(places, [&](int i, int j, Real, Real, const Vector3r&) {
-		writeSpheres(i, j, {hexmembrane::noMemory(), spheres.lawOf(i, j), hexmembrane::contactTouching});
+	state->forEachSpherePair(places, [&](int i, int j, const Contact& contact) {
+		write(spheres.id[i], spheres.id[j], contact, true, CompactState::touchOf(places[i], places[j]), places[i].radius, places[j].radius);
 	});
 	for (size_t b = 0; b < spheres.boundaryContacts.size(); ++b)
 		spheres.boundaryContacts[b].forEachTouching([&](int i, const Contact& contact) {

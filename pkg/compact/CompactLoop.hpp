@@ -25,6 +25,7 @@ public:
 
 	bool keepsContacts() const override { return state && !exported; }
 	vector<Vector3r> contactForces(const HexMembrane& membrane) const override;
+	void forEachContact(const VisitContact& visit) const override;
 
 private:
 	// CompactLoop.cpp: the run of a step

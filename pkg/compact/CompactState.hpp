@@ -53,6 +53,26 @@ public:
 
 	//! Normal forces of the contacts of each particle of the sheet with what is not of it, with spheres at `places` and boundaries of these shapes (N).
 	vector<Vector3r> contactForces(const vector<hexmembrane::Place>& places, const vector<std::shared_ptr<const hexmembrane::BoundaryShape>>& shapes) const;
+	//! Calls visit for each touching contact, likewise.
+	void visitContacts(const vector<hexmembrane::Place>& places, const vector<std::shared_ptr<const hexmembrane::BoundaryShape>>& shapes,
+	                   const VisitContact& visit) const;
+	//! Where two spheres touch, seen from the first.
+	static hexmembrane::BoundaryTouch touchOf(const hexmembrane::Place& a, const hexmembrane::Place& b)
+	{
+		const Vector3r branch = b.centre - a.centre;
+		const Real distance = branch.norm(), u = a.radius + b.radius - distance;
+		const Vector3r normal = branch / distance;
+		return {u, normal, a.centre + (a.radius - 0.5 * u) * normal};
+	}
+	//! Calls visit(i, j, contact) for each touching contact of two spheres, those without memory too, with spheres at `places`.
+	template <typename Visit>
+	void forEachSpherePair(const vector<hexmembrane::Place>& places, Visit&& visit) const
+	{
+		spheres.contacts.forEachTouching(visit);
+		spheres.smooth.forEachTouching(places, [&](int i, int j, Real, Real, const Vector3r&) {
+			visit(i, j, hexmembrane::Contact{hexmembrane::noMemory(), spheres.lawOf(i, j), hexmembrane::contactTouching});
+		});
+	}
 
 	int grains() const { return spheres.grains(); }
 	hexmembrane::PaddedRings& velocity() { return sheet.velocity ? *sheet.velocity : ownVelocity; }

@@ -40,6 +40,16 @@ struct ContactSums {
 	string silent;                     //!< class of a contact that does not tell its normal force and stiffness, empty: none
 };
 
+/*! A touching contact in an instant. */
+struct TouchingContact {
+	Body::id_t id1, id2;       //!< of its bodies; a boundary is the first
+	Vector3r centre1, centre2; //!< of its spheres; of a boundary the point (m)
+	Vector3r point;            //!< half way through the overlap (m)
+	Vector3r force;            //!< of the springs, on the second body (N)
+	Real normalForce;          //!< compression positive (N)
+};
+using VisitContact = std::function<void(const TouchingContact&)>;
+
 /*! An instant of a run as engines see it: positions and contact forces belong together, velocities are those of half a step before. */
 class StepView {
 public:
@@ -61,6 +71,8 @@ public:
 	virtual ContactSums contacts(Body::id_t boundary) = 0;
 	//! Stiffness of a boundary's contacts along a unit vector: sum of kn c^2 + ks (1 - c^2), c the cosine between normal and vector (N/m).
 	virtual Real stiffness(Body::id_t boundary, const Vector3r& along) = 0;
+	//! Calls visit for every touching contact.
+	virtual void forEachContact(const VisitContact& visit) = 0;
 };
 
 class Stepped {
@@ -104,6 +116,8 @@ public:
 	virtual bool keepsContacts() const = 0;
 	//! As StepView::contactForces(), of the last step.
 	virtual vector<Vector3r> contactForces(const HexMembrane& membrane) const = 0;
+	//! As StepView::forEachContact(), of the last step.
+	virtual void forEachContact(const VisitContact& visit) const = 0;
 };
 
 } // namespace yade

@@ -7,6 +7,7 @@
 
 #include <core/Interaction.hpp>
 #include <pkg/common/NormShearPhys.hpp>
+#include <pkg/common/Sphere.hpp>
 #include <pkg/dem/NewtonIntegrator.hpp>
 
 namespace yade {
@@ -15,7 +16,7 @@ namespace {
 
 //! Calls visit(geom, phys) for each contact of a body. \return class of a contact that does not tell its normal and stiffness, which is left out; "": none
 template <typename Visit>
-string forEachContact(const Body& body, Visit&& visit)
+string forEachOfBody(const Body& body, Visit&& visit)
 {
 	string silent;
 	for (const auto& entry : body.intrs) {
@@ -144,7 +145,7 @@ ContactSums BodyView::contacts(Body::id_t boundary)
 	scene.forces.sync();
 	ContactSums sums;
 	sums.force = scene.forces.getForce(boundary);
-	sums.silent = forEachContact(*(*scene.bodies)[boundary], [&](const GenericSpheresContact& geom, const NormPhys& phys) {
+	sums.silent = forEachOfBody(*(*scene.bodies)[boundary], [&](const GenericSpheresContact& geom, const NormPhys& phys) {
 		++sums.count;
 		sums.normalForce += phys.normalForce.dot(geom.normal);
 		sums.normalStiffness += phys.kn;
@@ -155,7 +156,7 @@ ContactSums BodyView::contacts(Body::id_t boundary)
 Real BodyView::stiffness(Body::id_t boundary, const Vector3r& along)
 {
 	Real sum = 0;
-	const string silent = forEachContact(*(*scene.bodies)[boundary], [&](const GenericSpheresContact& geom, const NormPhys& phys) {
+	const string silent = forEachOfBody(*(*scene.bodies)[boundary], [&](const GenericSpheresContact& geom, const NormPhys& phys) {
 		const auto* shear = dynamic_cast<const NormShearPhys*>(&phys);
 		const Real cosine = geom.normal.dot(along), squared = cosine * cosine;
 		sum += phys.kn * squared + (shear ? shear->ks * (1 - squared) : 0);
@@ -165,5 +166,36 @@ Real BodyView::stiffness(Body::id_t boundary, const Vector3r& along)
 		                         " do not tell their stiffness; fix: a contact law whose IPhys derives from NormPhys, or give contactStiffness in N/m");
 	return sum;
 }
+
+namespace {
+
+void forEachInteraction(const Scene& scene, const string& who, const VisitContact& visit)
+{
+	for (const auto& interaction : *scene.interactions) {
+		if (!interaction->isReal()) continue;
+		const Body *a = livingBody(*scene.bodies, interaction->getId1()), *b = livingBody(*scene.bodies, interaction->getId2());
+		if (!a || !b) continue; // YADE takes it away in the next step
+		const auto* geom = dynamic_cast<const GenericSpheresContact*>(interaction->geom.get());
+		const auto* phys = dynamic_cast<const NormShearPhys*>(interaction->phys.get());
+		if (!geom || !phys)
+			throw std::runtime_error(who + ": contacts of " + interaction->phys->getClassName() +
+			                         " do not tell their forces; fix: a contact law whose IPhys derives from NormShearPhys");
+		const auto centre = [&](const Body& body) { return dynamic_cast<const Sphere*>(body.shape.get()) ? body.state->pos : geom->contactPoint; };
+		visit({a->getId(), b->getId(), centre(*a), centre(*b), geom->contactPoint, phys->normalForce + phys->shearForce,
+		       phys->normalForce.dot(geom->normal)});
+	}
+}
+
+} // namespace
+
+void forEachContactOf(const Scene& scene, const string& who, const VisitContact& visit)
+{
+	if (const auto* keeper = ContactKeeper::in(scene))
+		keeper->forEachContact(visit);
+	else
+		forEachInteraction(scene, who, visit);
+}
+
+void BodyView::forEachContact(const VisitContact& visit) { forEachInteraction(scene, who, visit); }
 
 } // namespace yade

@@ -5,6 +5,9 @@
 
 namespace yade {
 
+/*! Calls visit for every touching contact of the last step, in either tier. `who` asks. \throws std::runtime_error for a contact whose law does not tell its forces */
+void forEachContactOf(const Scene& scene, const string& who, const VisitContact& visit);
+
 /*! The reference tier's StepView: YADE's bodies, forces and interactions. */
 class BodyView : public StepView {
 public:
@@ -18,6 +21,7 @@ public:
 	vector<Vector3r> contactForces(const HexMembrane& membrane) override;
 	ContactSums contacts(Body::id_t boundary) override;
 	Real stiffness(Body::id_t boundary, const Vector3r& along) override;
+	void forEachContact(const VisitContact& visit) override;
 
 private:
 	Scene& scene;

@@ -22,8 +22,6 @@ static_assert(std::is_same<Vector3r, hexmembrane::Vec3>::value, "the kernels wor
 
 namespace {
 
-const Scene& currentScene() { return *Omega::instance().getScene(); }
-
 bool innerFromName(const string& surface)
 {
 	if (surface != "inner" && surface != "centre") hexmembrane::reject("HexMembrane: surface", "'" + surface + "'", "unknown", "'inner' or 'centre'");
@@ -179,9 +177,8 @@ vector<Vector3r> HexMembrane::positions_get() const
 	return x;
 }
 
-vector<Vector3r> HexMembrane::surfacePoints(const string& surface) const
+vector<Vector3r> HexMembrane::surfacePoints(const string& surface, vector<Vector3r> x) const
 {
-	vector<Vector3r> x = positions_get();
 	if (!innerFromName(surface)) return x;
 	hexmembrane::PressureForce mesh(hexmembrane::TriangleMesh(static_cast<int>(x.size()), triangleList()), 0.);
 	vector<Vector3r> unused, normals;
@@ -191,20 +188,25 @@ vector<Vector3r> HexMembrane::surfacePoints(const string& surface) const
 	return x;
 }
 
-hexmembrane::TubeSlab HexMembrane::slab(const string& surface, Real zBottom, Real zTop, const char* argument) const
+hexmembrane::TubeSlab HexMembrane::slab(const string& surface, const vector<Vector3r>& centres, Real zBottom, Real zTop, const char* argument) const
 {
 	constexpr Real inf = std::numeric_limits<Real>::infinity();
-	const vector<Vector3r> x = surfacePoints(surface);
+	const vector<Vector3r> x = surfacePoints(surface, centres);
 	const Real low = math::isnan(zBottom) ? -inf : zBottom, high = math::isnan(zTop) ? inf : zTop;
 	return named("HexMembrane", {{"zBottom", argument}}, [&] { return hexmembrane::measureTube(triangleList(), x, low, high); });
 }
 
-Real HexMembrane::surfaceArea(const string& surface, Real zBottom, Real zTop) const { return slab(surface, zBottom, zTop, "surfaceArea: zBottom").area; }
+Real HexMembrane::surfaceArea(const string& surface, Real zBottom, Real zTop) const
+{
+	return slab(surface, positions_get(), zBottom, zTop, "surfaceArea: zBottom").area;
+}
 
 Real HexMembrane::enclosedVolume(Real zBottom, Real zTop, const string& surface) const
 {
-	return slab(surface, zBottom, zTop, "enclosedVolume: zBottom").volume;
+	return slab(surface, positions_get(), zBottom, zTop, "enclosedVolume: zBottom").volume;
 }
+
+Real HexMembrane::volumeWithin(const vector<Vector3r>& x, Real zBottom, Real zTop) const { return slab("inner", x, zBottom, zTop, "zBottom").volume; }
 
 Real HexMembrane::meanRadius(Real zBottom, Real zTop, const string& surface) const
 {
@@ -256,14 +258,19 @@ Real HexMembrane::groupPressure(int group, const vector<Vector3r>& x, const vect
 	return force / area;
 }
 
-Real HexMembrane::transmitted(StepView& view, int group, const string& who) const
+vector<Vector3r> HexMembrane::positionsIn(StepView& view) const
 {
 	const hexmembrane::PaddedRings& rows = view.positions(*this);
 	vector<Vector3r> x;
 	x.reserve(ids.size());
 	for (int k = 0; k < rings; ++k)
 		for (int i = 0; i < perRing; ++i) x.push_back(rows.get(k, i));
-	return groupPressure(group, x, pressing(view.contactForces(*this)), who);
+	return x;
+}
+
+Real HexMembrane::transmitted(StepView& view, int group, const string& who) const
+{
+	return groupPressure(group, positionsIn(view), pressing(view.contactForces(*this)), who);
 }
 
 // What the particles press on others, from what others press on them.

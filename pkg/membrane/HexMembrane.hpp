@@ -44,6 +44,10 @@ public:
 	vector<Vector3r> contactForces(const Scene& scene, const string& who) const;
 	//! The pressure that a group transmits in this instant (Pa).
 	Real transmitted(StepView& view, int group, const string& who) const;
+	//! Volume (m3) inside the inner surface between two heights, with the particles at x.
+	Real volumeWithin(const vector<Vector3r>& x, Real zBottom, Real zTop) const;
+	//! The particles' places in this instant.
+	vector<Vector3r> positionsIn(StepView& view) const;
 	//! Mean pressure (Pa) that forces on the particles (N, positive inwards) are over the inner area of a group (0: all of groups 2 and 3).
 	Real groupPressure(int group, const vector<Vector3r>& x, const vector<Vector3r>& forces, const string& who) const;
 
@@ -60,12 +64,12 @@ private:
 	hexmembrane::HexLatticeSpec spec() const;
 	void checkGrain(Real sphereRadius) const;
 	//! Centres, or the points one radius further in along the vertex normals.
-	vector<Vector3r> surfacePoints(const string& surface) const;
+	vector<Vector3r> surfacePoints(const string& surface, vector<Vector3r> x) const;
 	static vector<Vector3r> pressing(vector<Vector3r> onParticles);
 	//! Of the last step, in either tier (N).
 	vector<Vector3r> pressingNow(const string& who) const;
 	//! Area and volume of that surface between two heights (NaN: to the end rings); `argument` is the lower one's name in a complaint.
-	hexmembrane::TubeSlab slab(const string& surface, Real zBottom, Real zTop, const char* argument) const;
+	hexmembrane::TubeSlab slab(const string& surface, const vector<Vector3r>& x, Real zBottom, Real zTop, const char* argument) const;
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(HexMembrane,Serializable,
 		"A flexible membrane: hexagonal rings of equal spheres round an upright cylindrical specimen. :yref:`generate<HexMembrane.generate>` appends them as ordinary :yref:`Sphere` bodies; "

@@ -17,7 +17,6 @@ WITHOUT_YADE = (
 	"scene.timestep",
 	"scene.geometry",
 	"scene.membrane_loads",
-	"measure.correction",
 	"output.records",
 	"output.vtk",
 	"output.plots",

@@ -185,6 +185,16 @@ class Consolidation:
 	friction: Optional[float] = key(
 		None, "coefficient of friction between grains until the end of consolidation; none: specimen.friction; lower: denser", "", low=0, high=5
 	)
+	axial: str = key(
+		"soil",
+		"axial stress that is brought to the pressure: that of the soil itself, in its middle half and from its contacts, or the platen's "
+		"force over its face ('platen', PFC's way: the soil then has what the membrane leaves of it)",
+		"",
+		choices=("soil", "platen"),
+	)
+	axialTime: Optional[float] = key(
+		None, "time constant of the loop of axial: soil; none: 10 d sqrt(rho/pressure), d the mean grain diameter", "s", low=0, openLow=True
+	)
 	unbalanced: float = key(1e-3, "limit of the unbalanced force ratio, membrane counted", "", low=0, high=0.1, openLow=True, free=True)
 	tolerance: Optional[float] = key(
 		None,

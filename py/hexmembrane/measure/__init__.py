@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is read from a scene: rows of the records, energies, the correction for the membrane, stress along the height."""
+"""What is read from a scene: rows of the records, energies, stress along the height."""

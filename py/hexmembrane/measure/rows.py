@@ -5,9 +5,9 @@ import dataclasses
 import math
 
 import numpy
-from yade import O, utils
+from yade import BodyArrays, O
 
-from hexmembrane.measure import correction, energy
+from hexmembrane.measure import energy
 
 
 @dataclasses.dataclass
@@ -49,39 +49,45 @@ class Grains:
 
 	@classmethod
 	def of(cls, ids):
-		radii = numpy.array([O.bodies[i].shape.radius for i in ids])
+		ids = list(ids)
+		radii = BodyArrays.radii(ids)
 		solid = 4 / 3 * math.pi * float((radii**3).sum())
-		return cls(list(ids), solid, 2 * float((radii**3).mean()) ** (1 / 3), sum(O.bodies[i].state.mass for i in ids) / solid)
+		return cls(ids, solid, 2 * float((radii**3).mean()) ** (1 / 3), float(BodyArrays.masses(ids).sum()) / solid)
 
 
 def escaped(scene, grains):
 	"""Id of a grain whose centre is outside the lateral boundary or behind a platen's face, None when all are inside."""
-	centre = numpy.array([tuple(O.bodies[i].state.pos) for i in grains.ids])
+	centre = BodyArrays.positions(grains.ids)
 	bottom, top = scene.faces()
 	lost = scene.lateralBoundary.outside(centre) | (centre[:, 2] <= bottom) | (centre[:, 2] >= top)
 	return grains.ids[int(numpy.argmax(lost))] if lost.any() else None
 
 
-def coordination(first, count):
-	"""2 (contacts among grains that carry a normal force)/(grains); grains are bodies ``first`` .. ``first + count - 1``."""
-	last = first + count
-	touching = 0
-	for contact in O.interactions:
-		if first <= contact.id1 < last and first <= contact.id2 < last and contact.phys.normalForce.squaredNorm() > 0:
-			touching += 1
-	return 2 * touching / count
+def soilStress(measured):
+	"""The columns of the soil's stress [Pa] from what ``SoilMeasure.stress()`` gives."""
+	columns = {}
+	for name, part in (("soil_{}", "whole"), ("soil_{}_middle", "middle"), ("boundary_{}", "boundary")):
+		stress = measured[part]
+		columns[name.format("axial")] = stress[2, 2]
+		columns[name.format("radial")] = 0.5 * (stress[0, 0] + stress[1, 1])
+	axial, radial = columns["soil_axial"], columns["soil_radial"]
+	return {"q": axial - radial, "p": (axial + 2 * radial) / 3, **columns}
+
+
+def unbalanced(ids, contactForce):
+	"""Mean resultant force on moving bodies over the mean contact force, 1 without contacts; as YADE's ``unbalancedForce``."""
+	return float(numpy.linalg.norm(BodyArrays.forces(ids), axis=1).mean()) / contactForce if contactForce > 0 else 1.0
 
 
 def row(scene, grains, reference, stage, elapsed):
 	"""The measured row as a dict, of the last step in either tier; see :data:`hexmembrane.output.records.COLUMNS`."""
-	scene.exportContacts()
+	measured = scene.measure.stress()
 	boundary = scene.lateralBoundary
 	bottom, top = scene.faces()
 	height = top - bottom
-	volume, radius = boundary.volume(bottom, top), boundary.meanRadius()
+	volume, radius = measured["volume"], boundary.meanRadius()
 	pressure = boundary.pressure
 	forces = scene.bottomDrive.force, scene.topDrive.force
-	q = (sum(forces) / 2 - pressure * scene.endArea()) / (volume / height)
 	speed = scene.approachSpeed()
 	inertial = speed / height * grains.meanDiameter * math.sqrt(grains.density / pressure) if pressure > 0 else 0.0
 	energies = energy.current()
@@ -92,8 +98,8 @@ def row(scene, grains, reference, stage, elapsed):
 		"step": O.iter,
 		"time": O.time,
 		"axial_strain": -dz,
-		"q": q,
-		"axial_stress": q + pressure,
+		**soilStress(measured),
+		"q_cell": (sum(forces) / 2 - pressure * scene.endArea()) / (volume / height),
 		"sigma3_target": pressure,
 		"sigma3_applied": boundary.appliedPressure,
 		"sigma3_transmitted_group3": boundary.transmittedPressure(3),
@@ -102,8 +108,8 @@ def row(scene, grains, reference, stage, elapsed):
 		"volumetric_strain_radius": dz + 2 * dr,
 		"volumetric_strain_volume": volume / reference.volume - 1,
 		"porosity": 1 - grains.solidVolume / volume,
-		"coordination": coordination(grains.ids[0], len(grains.ids)),
-		"unbalanced": utils.unbalancedForce(),
+		"coordination": measured["coordination"],
+		"unbalanced": unbalanced(grains.ids + boundary.movingIds(), measured["contactForce"]),
 		"membrane_unbalanced": boundary.unbalanced(),
 		"inertial_number": abs(inertial),
 		"platen_force_bottom": forces[0],
@@ -115,8 +121,10 @@ def row(scene, grains, reference, stage, elapsed):
 		"bonds_broken": boundary.brokenBonds(),
 		"elapsed": round(elapsed, 2),
 		**_energies(energies, reference.energies),
-		**correction.columns(loads),
-		"q_corrected": correction.correctedStress(sum(forces) / 2, boundary.appliedPressure, volume / height, loads),
+		"pressure_axial": loads.axialPush,
+		"membrane_axial_mid": loads.axialPullMiddle,
+		"membrane_axial_end": loads.axialPullEnd,
+		"sigma3_membrane": loads.radialPressure,
 	}
 
 

@@ -4,29 +4,23 @@
 import pathlib
 
 import numpy
+import yade
 from yade import O
 
 from hexmembrane.output import vtk
-from hexmembrane.scene import geometry
 
 
-def _contacts(count):
-	"""Contacts with a normal force of each body."""
-	contacts = numpy.zeros(count, dtype=numpy.int32)
-	for contact in O.interactions:
-		if contact.phys.normalForce.squaredNorm() > 0:
-			contacts[contact.id1] += 1
-			contacts[contact.id2] += 1
-	return contacts
-
-
-def writeGrains(path, grains):
-	"""Write the grains' state as it stands."""
-	x, v, u = geometry.motions(O.bodies[i].state for i in grains.ids)
-	ids = numpy.array(grains.ids)
-	radii = numpy.array([O.bodies[i].shape.radius for i in grains.ids])
-	arrays = {"id": ids, "radius": radii, "velocity": v, "displacement": u, "coordination": _contacts(len(O.bodies))[ids]}
-	vtk.write(path, x, pointData=arrays)
+def writeGrains(path, grains, measure):
+	"""Write the grains' state as it stands; ``measure``: the scene's SoilMeasure, for the coordination numbers."""
+	ids, arrays = grains.ids, yade.BodyArrays
+	data = {
+		"id": numpy.array(ids),
+		"radius": arrays.radii(ids),
+		"velocity": arrays.velocities(ids),
+		"displacement": arrays.displacements(ids),
+		"coordination": measure.coordinationNumbers(ids),
+	}
+	vtk.write(path, arrays.positions(ids), pointData=data)
 
 
 class Frames:
@@ -44,7 +38,7 @@ class Frames:
 		self.folder.mkdir(exist_ok=True)
 		number = len(self.written)
 		boundary = scene.lateralBoundary
-		writeGrains(self.folder / f"grains-{number:04d}.vtp", grains)
+		writeGrains(self.folder / f"grains-{number:04d}.vtp", grains, scene.measure)
 		surface = boundary.surface(startRadius)
 		vtk.write(self.folder / f"{boundary.name}-{number:04d}.vtp", surface.points, surface.triangles, surface.pointData, surface.cellData)
 		self.written.append((O.time, number))

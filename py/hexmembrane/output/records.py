@@ -32,15 +32,28 @@ COLUMNS = (
 	Column("step", "", "YADE's step, O.iter"),
 	Column("time", "s", "YADE's time, O.time"),
 	Column("axial_strain", "-", "eps1 = (h0 - h)/h0 with h the distance of the platens' faces; compression positive"),
+	Column("q", "Pa", "deviatoric stress of the soil, soil_axial - soil_radial; compression positive"),
+	Column("p", "Pa", "mean stress of the soil, (soil_axial + 2 soil_radial)/3; compression positive"),
 	Column(
-		"q",
+		"soil_axial",
 		"Pa",
-		"deviatoric stress (F - sigma3 Ae)/Am: F mean platen force, Ae face of a platen (pi r^2 in a rigid wall), Am mean area V/h; compression positive",
+		"mean axial stress of the soil over V from its own contacts, sum F (x) l/V, see SoilMeasure; compression positive",
 	),
+	Column("soil_radial", "Pa", "the same, mean of the two horizontal normal stresses"),
+	Column("soil_axial_middle", "Pa", "soil_axial of the middle half of the height, branches cut at its planes"),
+	Column("soil_radial_middle", "Pa", "soil_radial of the middle half"),
 	Column(
-		"axial_stress",
+		"boundary_axial",
 		"Pa",
-		"q + sigma3_target, at mid-height by the balance of forces on half the specimen; compression positive",
+		"the soil's axial stress from its boundary alone, -sum f (x) x/V over all contacts with platens and membrane or wall, friction included; "
+		"it differs from soil_axial by what inertia takes: a check",
+	),
+	Column("boundary_radial", "Pa", "the same, mean of the two horizontal normal stresses"),
+	Column(
+		"q_cell",
+		"Pa",
+		"what a load cell at the platens and a laboratory's area correction show: (F - sigma3_target Ae)/Am, F mean platen force, Ae face of a platen "
+		"(pi r^2 in a rigid wall), Am mean area V/h; the membrane's pull and sag are in it; compression positive",
 	),
 	Column("sigma3_target", "Pa", "sigma3: pressure asked for, that the soil is to receive; pushes inwards"),
 	Column(
@@ -121,12 +134,6 @@ COLUMNS = (
 		"Pa",
 		"part of the membrane's own tension in what its main body transmits: forces of the bonds towards the axis over the same "
 		"area; inwards positive; 0 with a rigid wall",
-	),
-	Column(
-		"q_corrected",
-		"Pa",
-		"(F + pressure_axial + membrane_axial_mid - membrane_axial_end)/Am - (sigma3_applied + sigma3_membrane): q without the membrane, "
-		"by the forces that act; q with a rigid wall, whose friction stays in it; compression positive",
 	),
 )
 

@@ -104,7 +104,8 @@ def build(config, packing, say=print):
 		yade.PlatenDrive(platen=bottom, direction=(0, 0, 1), mode="velocity", velocity=0.0),
 		yade.PlatenDrive(platen=top, direction=(0, 0, -1), mode="stress", stress=0.0, area=math.pi * packing.radius**2),
 	]
-	O.engines = _engines(config, [*before, *drives, *after], min(smallest, parts.smallestRadius))
+	axial = _axialServo(config, packing, parts, bottom, top, drives[1])
+	O.engines = _engines(config, [*before, *axial, *drives, *after], min(smallest, parts.smallestRadius))
 	O.trackEnergy = config.output.energy
 	scene = Scene()
 	_setTimeStep(config, timestep.grainStep(config.specimen, smallest), parts, say)
@@ -116,6 +117,16 @@ def build(config, packing, say=print):
 		+ ("" if level >= 300 else "; WARNING: below 300 the grains are soft and overlaps are not small; fix: raise specimen.emod")
 	)
 	return scene
+
+
+def _axialServo(config, packing, parts, bottom, top, drive):
+	"""The engine that closes the top platen's stress on the soil's, in a list; none when the platen's force itself is asked for."""
+	keys = config.consolidation
+	if keys.axial == "platen":
+		return []
+	time = keys.axialTime or 10 * timestep.inertialTime(packing.radii, config.specimen.density, keys.pressure)
+	measure = yade.SoilMeasure(bottomPlaten=bottom, topPlaten=top, **parts.around)
+	return [yade.AxialStressServo(measure=measure, drive=drive, stress=0.0, timeConstant=time)]
 
 
 def _setTimeStep(config, grains, parts, say):

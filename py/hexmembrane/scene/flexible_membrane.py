@@ -81,6 +81,9 @@ class FlexibleMembrane(LateralBoundary):
 		self.radialServo = singleEngine(engines, "MembraneRadialServo")
 		self.oRings = singleEngine(engines, "MembraneORings")
 		self.membrane = self.bonds.membrane
+		self._triangles = numpy.array([tuple(t) for t in self.membrane.triangles])
+		self._group = numpy.array(self.membrane.groups, dtype=numpy.int32)
+		self._moving = [i for i, group in zip(self.membrane.ids, self._group) if group != 1]
 
 	@classmethod
 	def make(cls, config, packing):
@@ -112,6 +115,7 @@ class FlexibleMembrane(LateralBoundary):
 			overhang=membrane.rings * membrane.ringSpacing - config.specimen.height,
 			smallestRadius=membrane.sphereRadius,
 			criticalStep=math.sqrt(scaling) * unscaled,
+			around={"membrane": membrane},
 			log=[
 				cls._description(keys, membrane, smallest),
 				*cls._scaled(config, packing, membrane, scaling, unscaled),
@@ -151,6 +155,13 @@ class FlexibleMembrane(LateralBoundary):
 		]
 
 	@property
+	def around(self):
+		return {"membrane": self.membrane}
+
+	def movingIds(self):
+		return self._moving
+
+	@property
 	def pressure(self):
 		return self.pressureEngine.pressure
 
@@ -187,8 +198,7 @@ class FlexibleMembrane(LateralBoundary):
 	def unbalanced(self):
 		"""Mean resultant force on the particles of groups 2 and 3, their mass times acceleration, over the confining pressure on a particle's area."""
 		membrane, pressure = self.membrane, self.pressure
-		free = [i for i, group in zip(membrane.ids, membrane.groups) if group != 1]
-		force = numpy.array([tuple(O.forces.f(i)) for i in free])
+		force = yade.BodyArrays.forces(self._moving)
 		particle = 2 * math.sqrt(3) * membrane.sphereRadius**2
 		return float(numpy.linalg.norm(force, axis=1).mean()) / (pressure * particle) if pressure > 0 else 0.0
 
@@ -201,8 +211,7 @@ class FlexibleMembrane(LateralBoundary):
 		A point on the inner side of the membrane particle nearest to it, by the surface's normal there, is inside; the few others, where
 		the membrane is folded, are looked at by :func:`hexmembrane.scene.geometry.insideTube`.
 		"""
-		x = numpy.array(self.membrane.positions)
-		triangles = numpy.array([tuple(t) for t in self.membrane.triangles])
+		x, triangles = yade.BodyArrays.positions(self.membrane.ids), self._triangles
 		nearest = cKDTree(x).query(points)[1]
 		lost = ((points - x[nearest]) * geometry.normals(x, triangles)[nearest]).sum(axis=1) >= 0
 		for k in numpy.flatnonzero(lost):
@@ -215,15 +224,14 @@ class FlexibleMembrane(LateralBoundary):
 	def surface(self, startRadius):
 		"""A surface through the centres; arrays: :mod:`hexmembrane.output.vtk`."""
 		membrane = self.membrane
-		x, v, u = geometry.motions(O.bodies[i].state for i in membrane.ids)
-		triangles = numpy.array([tuple(t) for t in membrane.triangles])
-		group = numpy.array(membrane.groups, dtype=numpy.int32)
+		ids, triangles, group = membrane.ids, self._triangles, self._group
+		x, u = yade.BodyArrays.positions(ids), yade.BodyArrays.displacements(ids)
 		beside = self.radialServo.factor * self.radialServo.pressure
 		points = {
-			"id": numpy.array(membrane.ids),
+			"id": numpy.array(ids),
 			"group": group,
 			"radius": numpy.full(len(x), membrane.sphereRadius),
-			"velocity": v,
+			"velocity": yade.BodyArrays.velocities(ids),
 			"displacement": u,
 			"normal_displacement": (u * geometry.normals(x - u, triangles)).sum(axis=1),
 			"pressure": numpy.where(group == 1, 0.0, numpy.where(group == 2, beside, self.appliedPressure)),

@@ -1,16 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Bodies' states as arrays, and the geometry of triangulated surfaces. Uses nothing of YADE."""
+"""The geometry of triangulated surfaces. Uses nothing of YADE."""
 
 import math
 
 import numpy
-
-
-def motions(states):
-	"""Positions, velocities and displacements since the stage began, (N, 3) each, of bodies' states."""
-	states = list(states)
-	x = numpy.array([tuple(s.pos) for s in states])
-	return x, numpy.array([tuple(s.vel) for s in states]), x - numpy.array([tuple(s.refPos) for s in states])
 
 
 def normals(points, triangles):

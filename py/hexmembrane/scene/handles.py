@@ -16,7 +16,8 @@ class Scene:
 	"""Handles to the parts of the scene in ``O``; make a new one after ``O.load``.
 
 	Attributes: ``lateralBoundary`` (a :class:`hexmembrane.scene.lateral_boundary.LateralBoundary`), ``guard`` (RunawayGuard),
-	``bottomDrive`` and ``topDrive`` (the PlatenDrive of each end platen), ``loop`` (the compact tier's engine, None in the reference tier).
+	``bottomDrive`` and ``topDrive`` (the PlatenDrive of each end platen), ``axialServo`` (AxialStressServo, None where the platen's force is held),
+	``measure`` (a SoilMeasure), ``loop`` (the compact tier's engine, None in the reference tier).
 
 	:raises RuntimeError: the scene in ``O`` is not one of :func:`hexmembrane.scene.builder.build`.
 	"""
@@ -32,6 +33,8 @@ class Scene:
 		if len(drives) != 2:
 			raise RuntimeError(f"Scene.engines = {len(drives)} PlatenDrive: 2 expected; fix: load a state saved by this test")
 		self.bottomDrive, self.topDrive = sorted(drives, key=lambda drive: -drive.direction[2])
+		self.axialServo = next(iter(byType.get("AxialStressServo", ())), None)
+		self.measure = yade.SoilMeasure(bottomPlaten=self.bottomDrive.platen, topPlaten=self.topDrive.platen, **self.lateralBoundary.around)
 		self._half = [O.bodies[drive.platen].shape.height / 2 for drive in (self.bottomDrive, self.topDrive)]
 
 	def faces(self):
@@ -80,7 +83,9 @@ class Scene:
 	def setPressure(self, pressure):
 		"""Give the lateral boundary and the top platen the confining pressure [Pa]."""
 		self.lateralBoundary.setPressure(pressure)
-		self.topDrive.stress = pressure
+		if self.axialServo:
+			self.axialServo.stress = pressure
+		self.topDrive.stress = pressure * (self.axialServo.factor if self.axialServo else 1)
 		# A new target would start the platen's time limit anew: a wall that moves by less than 0.05 % of its radius makes none.
 		if abs(self.topDrive.area / self.endArea() - 1) > 1e-3:
 			self.topDrive.area = self.endArea()
@@ -88,7 +93,7 @@ class Scene:
 	def setTimeLimit(self, limit):
 		"""Time [s] that each servo has to reach its target once, none without."""
 		limit = math.nan if limit is None else limit
-		self.topDrive.timeLimit = limit
+		(self.axialServo or self.topDrive).timeLimit = limit
 		self.lateralBoundary.setTimeLimit(limit)
 
 

@@ -21,6 +21,7 @@ class BoundaryParts:
 	:param platenRadius: radius that the platens need [m].
 	:param overhang: how far it reaches beyond the specimen, both ends together [m].
 	:param smallestRadius: of its spheres [m], inf without.
+	:param around: what tells it to a SoilMeasure, ``membrane`` or ``wall``, as keyword arguments.
 	:param criticalStep: its critical time step before there are contacts [s], inf without.
 	:param log: lines that describe it.
 	"""
@@ -30,6 +31,7 @@ class BoundaryParts:
 	overhang: float
 	smallestRadius: float
 	criticalStep: float
+	around: dict
 	log: list
 
 
@@ -93,6 +95,15 @@ class LateralBoundary(abc.ABC):
 	@abc.abstractmethod
 	def transmittedPressure(self, group):
 		"""Pressure that arrives at the soil [Pa]; 0: all, 2: beside the platens, 3: main body."""
+
+	@property
+	@abc.abstractmethod
+	def around(self):
+		"""What tells it to a SoilMeasure, ``membrane`` or ``wall``, as keyword arguments."""
+
+	def movingIds(self):
+		"""Ids of its bodies that move freely."""
+		return []
 
 	def brokenBonds(self):
 		"""Number of broken bonds of the boundary itself."""

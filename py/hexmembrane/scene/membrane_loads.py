@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a flexible membrane itself carries, read from the forces of its bonds and of its pressure.
 
-What follows from it for the stress of the soil: :mod:`hexmembrane.measure.correction`.
+The free body of half a specimen, at rest: N = F + P + T_mid - T_end, with N the soil's axial force at mid-height and F a platen's. A platen
+that carries sigma3 Ae does not give the soil sigma3: N acts on Am, which the membrane's sag makes less than Ae; P is less than the
+sigma3 (Ae - Am) of a sheet that the pressure reaches everywhere; and the pulls T of a sheet that is stretched between the grains and at
+the O-rings differ. The soil's own stress is measured from its contacts (SoilMeasure).
 """
 
 import dataclasses

@@ -51,8 +51,13 @@ class RigidWall(LateralBoundary):
 			overhang=0.0,
 			smallestRadius=math.inf,
 			criticalStep=math.inf,
+			around={"wall": wall},
 			log=[f"rigid wall: radius {1e3 * packing.radius:.4g} mm, friction {keys.friction:g}"],
 		)
+
+	@property
+	def around(self):
+		return {"wall": self.servo.wall}
 
 	@property
 	def pressure(self):

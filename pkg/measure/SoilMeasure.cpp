@@ -1,0 +1,180 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "SoilMeasure.hpp"
+
+#include "NumpyArray.hpp"
+
+#include "base/GatherBodies.hpp"
+#include "boundary/CylinderWall.hpp"
+#include "boundary/Platen.hpp"
+#include "membrane/BodyView.hpp"
+
+#include <core/Scene.hpp>
+
+namespace yade {
+
+YADE_PLUGIN((SoilMeasure));
+
+namespace {
+
+template <typename Wanted>
+const Body& bodyOf(const Scene& scene, Body::id_t id, const string& what, const string& shape)
+{
+	const Body* body = livingBody(*scene.bodies, id);
+	if (!body) throw std::runtime_error(what + " = " + std::to_string(id) + ": there is no such body; fix: give the id of a " + shape + " body");
+	if (!dynamic_cast<const Wanted*>(body->shape.get()))
+		throw std::runtime_error(what + " = " + std::to_string(id) + ": the body's shape is no " + shape + "; fix: give the id of a " + shape +
+		                         " body");
+	return *body;
+}
+
+Real halfOf(const Body& platen) { return 0.5 * static_cast<const Platen&>(*platen.shape).height; }
+
+// A tensor row by row, as numpy has it.
+boost::python::object tensor(const Matrix3r& m)
+{
+	vector<Real> rows;
+	for (int i = 0; i < 3; ++i)
+		for (int j = 0; j < 3; ++j) rows.push_back(m(i, j));
+	return numpyArray(rows, "f8", 3);
+}
+
+} // namespace
+
+void SoilMeasure::require(const Scene& scene, const string& who) const
+{
+	if (static_cast<bool>(membrane) == (wall >= 0))
+		hexmembrane::reject(who + ".membrane", string(membrane ? "given together with wall" : "None"), "what is round the soil is not clear",
+		                    "either membrane=HexMembrane(...) or wall=the id of a CylinderWall");
+	if (membrane)
+		membrane->requireGenerated(who);
+	else
+		bodyOf<CylinderWall>(scene, wall, who + ".wall", "CylinderWall");
+	bodyOf<Platen>(scene, bottomPlaten, who + ".bottomPlaten", "Platen");
+	bodyOf<Platen>(scene, topPlaten, who + ".topPlaten", "Platen");
+	const auto [low, high] = faces(scene);
+	if (!(low < high)) hexmembrane::reject(who + ".topPlaten", int(topPlaten), "its face is not above the bottom platen's", "the upper platen's id here");
+}
+
+std::array<Real, 2> SoilMeasure::faces(const Scene& scene) const
+{
+	const Body &bottom = *(*scene.bodies)[bottomPlaten], &top = *(*scene.bodies)[topPlaten];
+	return {bottom.state->pos[2] + halfOf(bottom), top.state->pos[2] - halfOf(top)};
+}
+
+Real SoilMeasure::volume(const Scene& scene, const vector<Vector3r>& sheet, Real low, Real high) const
+{
+	if (membrane) return membrane->volumeWithin(sheet, low, high);
+	const Real radius = static_cast<const CylinderWall&>(*(*scene.bodies)[wall]->shape).radius;
+	return M_PI * radius * radius * (high - low);
+}
+
+vector<char> SoilMeasure::grainsOf(const Scene& scene) const
+{
+	vector<char> grain(scene.bodies->size(), 0);
+	for (const auto& body : *scene.bodies)
+		if (body && dynamic_cast<const Sphere*>(body->shape.get())) grain[body->getId()] = 1;
+	if (membrane)
+		for (Body::id_t id : membrane->ids) grain[id] = 0;
+	return grain;
+}
+
+SoilMeasure::Stress SoilMeasure::measure(const Scene& scene, const EachContact& contacts, const vector<Vector3r>& sheet) const
+{
+	const auto [low, high] = faces(scene);
+	const Real quarter = 0.25 * (high - low);
+	hexmembrane::SlabStress slabs({low, low + quarter, high - quarter, high});
+	const vector<char> grain = grainsOf(scene);
+	Stress found;
+	int count = 0;
+	contacts([&](const TouchingContact& c) {
+		++count;
+		found.contactForce += c.force.norm();
+		const bool first = grain[c.id1], second = grain[c.id2];
+		if (!first && !second) return;
+		const Vector3r start = first ? c.centre1 : c.point, end = second ? c.centre2 : c.point;
+		slabs.add(start, end - start, c.force);
+		if (first && second)
+			found.grainContacts += c.normalForce > 0;
+		else
+			found.boundary -= (second ? c.force : Vector3r(-c.force)) * c.point.transpose();
+	});
+	if (count > 0) found.contactForce /= count;
+	found.grains = static_cast<int>(std::count(grain.begin(), grain.end(), 1));
+	found.volume = volume(scene, sheet, low, high);
+	found.middleVolume = volume(scene, sheet, low + quarter, high - quarter);
+	found.whole = slabs.total() / found.volume;
+	found.middle = slabs.sums()[1] / found.middleVolume;
+	found.boundary /= found.volume;
+	return found;
+}
+
+SoilMeasure::Stress SoilMeasure::measure(const Scene& scene, StepView& view) const
+{
+	return measure(scene, [&](const VisitContact& visit) { view.forEachContact(visit); }, membrane ? membrane->positionsIn(view) : vector<Vector3r>());
+}
+
+vector<Vector3r> SoilMeasure::sheetNow() const { return membrane ? membrane->positions_get() : vector<Vector3r>(); }
+
+boost::python::dict SoilMeasure::stress() const
+{
+	const Scene& scene = currentScene();
+	require(scene, "SoilMeasure");
+	const Stress found = measure(scene, [&](const VisitContact& visit) { forEachContactOf(scene, "SoilMeasure", visit); }, sheetNow());
+	boost::python::dict values;
+	values["whole"] = tensor(found.whole);
+	values["middle"] = tensor(found.middle);
+	values["boundary"] = tensor(found.boundary);
+	values["volume"] = found.volume;
+	values["middleVolume"] = found.middleVolume;
+	values["coordination"] = found.grains > 0 ? 2. * found.grainContacts / found.grains : NaN;
+	values["contactForce"] = found.contactForce;
+	return values;
+}
+
+boost::python::tuple SoilMeasure::profile(int count) const
+{
+	const Scene& scene = currentScene();
+	require(scene, "SoilMeasure");
+	if (count < 1) hexmembrane::reject("SoilMeasure.profile: slabs", count, "is no slab", "1 or more");
+	const auto [low, high] = faces(scene);
+	vector<Real> edges;
+	for (int k = 0; k <= count; ++k) edges.push_back(low + (high - low) * k / count);
+	hexmembrane::SlabStress slabs(edges);
+	const vector<char> grain = grainsOf(scene);
+	forEachContactOf(scene, "SoilMeasure", [&](const TouchingContact& c) {
+		const bool first = grain[c.id1], second = grain[c.id2];
+		if (!first && !second) return;
+		const Vector3r start = first ? c.centre1 : c.point;
+		slabs.add(start, (second ? c.centre2 : c.point) - start, c.force);
+	});
+	const vector<Vector3r> sheet = sheetNow();
+	vector<Real> volumes, stresses;
+	for (int s = 0; s < count; ++s) {
+		volumes.push_back(volume(scene, sheet, edges[s], edges[s + 1]));
+		for (int i = 0; i < 3; ++i)
+			for (int j = 0; j < 3; ++j) stresses.push_back(slabs.sums()[s](i, j) / volumes.back());
+	}
+	return boost::python::make_tuple(numpyArray(edges, "f8"), numpyArray(volumes, "f8"), numpyArray(stresses, "f8", 9).attr("reshape")(-1, 3, 3));
+}
+
+boost::python::object SoilMeasure::coordinationNumbers(const vector<Body::id_t>& ids) const
+{
+	const Scene& scene = currentScene();
+	vector<int> all(scene.bodies->size(), 0), wanted;
+	forEachContactOf(scene, "SoilMeasure", [&](const TouchingContact& c) {
+		if (!(c.normalForce > 0)) return;
+		++all[c.id1];
+		++all[c.id2];
+	});
+	for (Body::id_t id : ids) wanted.push_back(all.at(id));
+	return numpyArray(wanted, "i4");
+}
+
+boost::python::tuple SoilMeasure::faces_get() const
+{
+	require(currentScene(), "SoilMeasure");
+	const auto [low, high] = faces(currentScene());
+	return boost::python::make_tuple(low, high);
+}
+
+} // namespace yade
