@@ -178,7 +178,10 @@ class FlexibleMembrane(LateralBoundary):
 
 		The same rings all along, so that none enters or leaves the mean when a platen passes it.
 		"""
-		return self.membrane.meanRadius(*endHeights(self.membrane))
+		return self.membrane.meanRadius(*endHeights(self.membrane, self._heights()))
+
+	def _heights(self):
+		return yade.BodyArrays.positions(self.membrane.ids)[:, 2]
 
 	def volume(self, bottom, top):
 		return self.membrane.enclosedVolume(bottom, top)
@@ -203,7 +206,7 @@ class FlexibleMembrane(LateralBoundary):
 		return float(numpy.linalg.norm(force, axis=1).mean()) / (pressure * particle) if pressure > 0 else 0.0
 
 	def ownLoads(self, bottom, top):
-		return membraneLoads(self.membrane, self.bonds, self.pressureEngine, bottom, top)
+		return membraneLoads(self.membrane, self._heights(), self.bonds, self.pressureEngine, bottom, top)
 
 	def outside(self, points):
 		"""Which points are outside.

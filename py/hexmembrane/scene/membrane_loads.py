@@ -28,9 +28,12 @@ class MembraneLoads:
 	radialPressure: float = 0.0
 
 
-def endHeights(membrane):
-	"""Heights [m] of the planes midway between the innermost O-ring row and the row inside it, at the lower and the upper end."""
-	rows = numpy.array(membrane.positions)[:, 2].reshape(membrane.rings, membrane.perRing).mean(axis=1)
+def endHeights(membrane, z):
+	"""Heights [m] of the planes midway between the innermost O-ring row and the row inside it, at the lower and the upper end.
+
+	:param z: present heights of the membrane's particles [m].
+	"""
+	rows = z.reshape(membrane.rings, membrane.perRing).mean(axis=1)
 	k = membrane.oRingRows
 	return 0.5 * float(rows[k - 1] + rows[k]), 0.5 * float(rows[-k] + rows[-k - 1])
 
@@ -45,10 +48,11 @@ def axialPush(z, force, middle):
 	return 0.5 * float(force[z < middle].sum() - force[z >= middle].sum())
 
 
-def membraneLoads(membrane, bonds, pressureEngine, bottom, top):
+def membraneLoads(membrane, z, bonds, pressureEngine, bottom, top):
 	"""The :class:`MembraneLoads` of the last step.
 
 	:param membrane: a HexMembrane with O-ring rows.
+	:param z: present heights of its particles [m].
 	:param bonds: its MembraneBonds, a step run.
 	:param pressureEngine: its MembranePressure.
 	:param bottom: height of the bottom platen's face [m].
@@ -57,8 +61,8 @@ def membraneLoads(membrane, bonds, pressureEngine, bottom, top):
 	middle = 0.5 * (bottom + top)
 	applied = numpy.array([force[2] for force in pressureEngine.forces()])
 	return MembraneLoads(
-		axialPush=axialPush(numpy.array(membrane.positions)[:, 2], applied, middle),
+		axialPush=axialPush(z, applied, middle),
 		axialPullMiddle=bonds.axialTension(middle),
-		axialPullEnd=sum(bonds.axialTension(z) for z in endHeights(membrane)) / 2,
+		axialPullEnd=sum(bonds.axialTension(height) for height in endHeights(membrane, z)) / 2,
 		radialPressure=bonds.radialShare(3),
 	)
