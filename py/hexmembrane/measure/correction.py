@@ -20,7 +20,7 @@ F is what the soil presses on the platen: the O-rings are held on their own, so 
 other (T_mid = T_end) is not in F and takes nothing off. A laboratory's load cell has the O-rings' pull in it and would show F - T_end;
 against that reading the axial correction is -T_mid/Am.
 
-**Radial.** The membrane's own tension presses on the soil beside the applied pressure: ``sigma3_membrane``, the bonds' forces on the
+**Radial.** The membrane's own tension presses on the soil beside the applied pressure: ``sigma3_membrane``, the sheet's forces on the
 main body's particles towards the axis over the area that the transmitted pressure is counted on. At rest transmitted = applied +
 membrane.
 
