@@ -191,6 +191,10 @@ Real CompactLoop::criticalTimeStep()
 	hexmembrane::CriticalStep step(state->spheres);
 	for (Stepped* one : stepped)
 		one->forEachBond([&](int first, int second, const Vector3r& branch, Real kn, Real ks) { step.addBond(first, second, branch, kn, ks); });
+	if (state->sheet.ids)
+		step.setSheet(state->sheet.stencil, [&](const hexmembrane::PaddedRings& displacement, hexmembrane::PaddedRings& sum) {
+			for (const Stepped* one : stepped) one->addAnswer(displacement, sum);
+		});
 	return step.compute();
 }
 

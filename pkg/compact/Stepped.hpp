@@ -88,9 +88,11 @@ public:
 	virtual void bookWorks() {}
 	//! The particles that this engine holds together, after prepare().
 	virtual Sheet sheet() { return {}; }
-	//! Calls visit(first, second, branch, kn, ks) for each bond between particles of its sheet, by their indices there: for the critical time step.
+	//! Calls visit(first, second, branch, kn, ks) for each spring between particles of its membrane, by their indices there: for the critical time step.
 	using VisitBond = std::function<void(int, int, const Vector3r&, Real, Real)>;
 	virtual void forEachBond(const VisitBond&) const {}
+	//! Adds the forces that small displacements of its membrane's particles (wrapped rows) call up beyond those springs, linear in them: likewise.
+	virtual void addAnswer(const hexmembrane::PaddedRings& displacement, hexmembrane::PaddedRings& sum) const { (void)displacement, (void)sum; }
 	//! The membrane that it acts on, none: no membrane.
 	virtual const HexMembrane* actsOn() const { return nullptr; }
 	//! Whether there may be several engines of this class in a list.

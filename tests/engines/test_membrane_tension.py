@@ -88,7 +88,7 @@ def test_termsOfACylinderPulledLengthwise(O, tier):
 	O.dt = 1e-12  # nothing moves
 	O.step()
 	z = yade.BodyArrays.positions(m.ids)[:, 2]
-	loads = membraneLoads(m, z, bonds, pressing, 0, HEIGHT)
+	loads = membraneLoads(m, z, [bonds], pressing, 0, HEIGHT)
 	assert abs(loads.axialPush) < 1e-3 * P * math.pi * m.innerRadius**2  # a straight tube has no axial push
 	along = 2 / math.sqrt(3) * kn / (1 - 1 / 9) * strain
 	assert loads.axialPullMiddle == pytest.approx(2 * math.pi * m.centreRadius * along, rel=2e-3)

@@ -6,7 +6,9 @@
 #include <omp.h>
 
 using namespace hexmembrane;
+using support::load;
 using support::relativeDifference;
+using support::unload;
 
 namespace {
 
@@ -15,22 +17,6 @@ constexpr double inf = std::numeric_limits<double>::infinity();
 BondLaw law(double kn, double ks = 0, double tensile = inf, double shear = inf, double friction = 0, bool tensionOnly = false)
 {
 	return {kn, ks, tensile, shear, friction, tensionOnly};
-}
-
-void load(PaddedRings& field, const HexStencil& s, const std::vector<Vec3>& values)
-{
-	for (int k = 0; k < s.rings; ++k) {
-		for (int i = 0; i < s.perRing; ++i) field.set(k, i, values[s.at(k, i)]);
-		field.wrap(k);
-	}
-}
-
-std::vector<Vec3> unload(const PaddedRings& field, const HexStencil& s)
-{
-	std::vector<Vec3> values;
-	for (int k = 0; k < s.rings; ++k)
-		for (int i = 0; i < s.perRing; ++i) values.push_back(field.get(k, i));
-	return values;
 }
 
 /// A membrane with its bonds, fast and slow side by side.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/membrane/HexLattice.hpp"
+#include "kernels/membrane/PaddedRings.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,6 +44,30 @@ inline std::vector<Vec3> randomVectors(size_t count, double size, unsigned seed)
 
 /// A small membrane of the study's proportions.
 inline HexLattice smallTube() { return makeHexLattice({0.020, 0.030, 0.002, Placement::outside, 1, 1}); }
+
+/// Vectors of a tube's particles as wrapped rows.
+inline void load(PaddedRings& field, const HexStencil& s, const std::vector<Vec3>& values)
+{
+	for (int k = 0; k < s.rings; ++k) {
+		for (int i = 0; i < s.perRing; ++i) field.set(k, i, values[s.at(k, i)]);
+		field.wrap(k);
+	}
+}
+
+inline PaddedRings rowsOf(const HexStencil& s, const std::vector<Vec3>& values)
+{
+	PaddedRings field(s.perRing, s.rings);
+	load(field, s, values);
+	return field;
+}
+
+inline std::vector<Vec3> unload(const PaddedRings& field, const HexStencil& s)
+{
+	std::vector<Vec3> values;
+	for (int k = 0; k < s.rings; ++k)
+		for (int i = 0; i < s.perRing; ++i) values.push_back(field.get(k, i));
+	return values;
+}
 
 /// Adds the centres of both ends, so that the tube becomes a closed surface.
 inline void closeTube(HexLattice& tube)

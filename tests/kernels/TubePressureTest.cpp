@@ -11,15 +11,7 @@ namespace {
 
 constexpr double pressure = 1e5;
 
-PaddedRings field(const HexLattice& tube)
-{
-	PaddedRings x(tube.perRing, tube.rings);
-	for (int k = 0; k < tube.rings; ++k) {
-		for (int i = 0; i < tube.perRing; ++i) x.set(k, i, tube.positions[k * tube.perRing + i]);
-		x.wrap(k);
-	}
-	return x;
-}
+PaddedRings field(const HexLattice& tube) { return support::rowsOf(tube, tube.positions); }
 
 /// Largest difference on the loaded rings from the kernel for any mesh, over the largest force.
 double difference(const HexLattice& tube, int first, int last, double offset, double* areaError = nullptr)

@@ -36,9 +36,27 @@ void CriticalStep::addBond(int first, int second, const Vec3& branch, double kn,
 	add(grains + first, grains + second, normal, 0.5 * branch, -0.5 * branch, springsAlone(kn, ks));
 }
 
+void CriticalStep::setSheet(const HexStencil& tube, Answer addAnswer)
+{
+	sheet = tube;
+	answer = std::move(addAnswer);
+}
+
+void CriticalStep::addSheet(const std::vector<Vec3>& x, std::vector<Vec3>& force) const
+{
+	PaddedRings displacement(sheet.perRing, sheet.rings), sum(sheet.perRing, sheet.rings);
+	for (int k = 0; k < sheet.rings; ++k) {
+		for (int i = 0; i < sheet.perRing; ++i) displacement.set(k, i, x[grains + sheet.at(k, i)]);
+		displacement.wrap(k);
+	}
+	answer(displacement, sum);
+	for (int k = 0; k < sheet.rings; ++k)
+		for (int i = 0; i < sheet.perRing; ++i) force[grains + sheet.at(k, i)] += sum.get(k, i);
+}
+
 double CriticalStep::compute(double tolerance, int most) const
 {
-	if (springs.empty()) return std::numeric_limits<double>::infinity();
+	if (springs.empty() && !answer) return std::numeric_limits<double>::infinity();
 	const std::size_t count = inverseMass.size();
 	std::vector<Vec3> x(count), w(count), f(count), t(count);
 	Random random(1);
@@ -80,6 +98,7 @@ double CriticalStep::compute(double tolerance, int most) const
 			f[s.j] -= force;
 			t[s.j] -= s.arm2.cross(force) + moment;
 		}
+		if (answer) addSheet(x, f);
 		for (std::size_t i = 0; i < count; ++i) {
 			x[i] = -inverseMass[i] * f[i];
 			w[i] = -inverseInertia[i] * t[i];

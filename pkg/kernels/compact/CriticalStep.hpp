@@ -2,17 +2,24 @@
 #pragma once
 
 #include "kernels/compact/SphereAssembly.hpp"
+#include "kernels/membrane/PaddedRings.hpp"
+
+#include <functional>
 
 namespace hexmembrane {
 
 /// Critical time step of central differences, 2/omega, with omega the highest frequency of the springs that are there now: every touching contact with its
-/// normal, shear and rolling spring (as if none were sliding), and the bonds that are added. Largest eigenvalue of M^-1 K by power iteration from a fixed
+/// normal, shear and rolling spring (as if none were sliding), the bonds that are added and the sheet's answer. Largest eigenvalue of M^-1 K by power iteration from a fixed
 /// start, matrix-free; K is symmetric and positive, so the iterates rise to it from below. Geometric stiffness (forces times rotations) is left out.
 class CriticalStep {
 public:
 	explicit CriticalStep(const SphereAssembly& flat);
 	/// Adds a bond of two membrane particles (local indices), `branch` from the first to the second; ks acts at its middle.
 	void addBond(int first, int second, const Vec3& branch, double kn, double ks);
+	/// Gives the membrane's particles further forces that are linear in their displacements, wrapped rows of `tube`, and that have an energy.
+	/// \param addAnswer adds them to its second argument
+	using Answer = std::function<void(const PaddedRings&, PaddedRings&)>;
+	void setSheet(const HexStencil& tube, Answer addAnswer);
 	/// \return the step (s), infinite without springs \param tolerance relative change of the eigenvalue at which to stop
 	double compute(double tolerance = 1e-4, int most = 2000) const;
 
@@ -27,7 +34,12 @@ private:
 		springs.push_back({i, j, normal, arm1, arm2, law});
 	}
 
+	/// Adds the sheet's answer to displacements x of all spheres to their forces.
+	void addSheet(const std::vector<Vec3>& x, std::vector<Vec3>& force) const;
+
 	std::vector<Spring> springs;
+	HexStencil sheet;
+	Answer answer;
 	std::vector<double> inverseMass, inverseInertia; ///< 0 for what does not move
 	int grains;
 };

@@ -39,6 +39,14 @@ double axialTension(const HexStencil& tube, const std::vector<Vec3>& x, const st
 	return sum;
 }
 
+double axialPull(const std::vector<Vec3>& x, const std::vector<Vec3>& f, double z)
+{
+	double sum = 0;
+	for (size_t i = 0; i < x.size(); ++i)
+		if (!(x[i][2] < z)) sum -= f[i][2];
+	return sum;
+}
+
 std::vector<RingLoad> ringLoads(const HexStencil& tube, const std::vector<Vec3>& x, const std::vector<Vec3>& f, double sphereRadius)
 {
 	std::vector<RingLoad> loads;

@@ -17,6 +17,9 @@ std::vector<Vec3> bondForces(const BondForce& bonds, const BondState& state);
 /// \param x positions of the particles (m) \param onFirst force on the first particle of each bond (N)
 double axialTension(const HexStencil& tube, const std::vector<Vec3>& x, const std::vector<Vec3>& onFirst, double z);
 
+/// The same (N) of forces f on the particles that add up to nothing, whatever calls them up: minus the axial forces on the particles that are not below z.
+double axialPull(const std::vector<Vec3>& x, const std::vector<Vec3>& f, double z);
+
 /// Radial load of a ring.
 struct RingLoad {
 	double force; ///< sum of the inward radial parts of the forces on its particles (N)

@@ -99,6 +99,17 @@ class Membrane:
 	densityScaling: Optional[float] = key(
 		1.0, "factor on the mass of the membrane's spheres, for a longer time step where they set it; none: as much as lets the grains set it", "", low=1
 	)
+	bendingStiffness: float = key(
+		0.0,
+		"bending stiffness D of the sheet, of a plate E t^3/(12 (1 - nu^2)); 0: none; over a hollow of radius a between grains the sheet sags by "
+		"pressure a^4/(64 D) when D alone carries it",
+		"N m",
+		low=0,
+	)
+	tensileStrength: Optional[float] = key(None, "tension at which a bond of two membrane spheres breaks; none: never", "N", low=0, openLow=True)
+	shearStrength: Optional[float] = key(
+		None, "shear force at which such a bond breaks, with poisson below 1/3; none: never", "N", low=0, openLow=True
+	)
 	tensionOnly: bool = key(False, "bonds carry tension only: the sheet wrinkles instead of carrying compression")
 	oRings: str = key("platens", "O-ring rows ride with the platens or stay fixed in space", "", choices=("platens", "fixed"))
 	surface: str = key("inner", "surface on which the pressure acts, inner surface or sphere centres", "", choices=("inner", "centre"))
@@ -142,6 +153,10 @@ class Membrane:
 		if self.tensionOnly and not self.centralBonds:
 			raise ConfigError(
 				f"{path}.tensionOnly", True, f"needs central bonds, and poisson = {self.poisson:g} has shear springs", "leave poisson at 1/3"
+			)
+		if self.shearStrength is not None and self.centralBonds:
+			raise ConfigError(
+				f"{path}.shearStrength", self.shearStrength, "bonds with poisson = 1/3 carry no shear force", "leave it out, or lower poisson"
 			)
 
 

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from yade import O
 
 from hexmembrane.scene import geometry, timestep
-from hexmembrane.scene.lateral_boundary import BoundaryParts, LateralBoundary, Surface, singleEngine
+from hexmembrane.scene.lateral_boundary import BoundaryParts, LateralBoundary, Surface, optionalEngine, singleEngine
 from hexmembrane.scene.membrane_loads import endHeights, membraneLoads
 
 #: Bit of the membrane's spheres in a body's mask.
@@ -70,13 +70,37 @@ def scaleDensity(membrane, factor):
 		state.inertia *= factor
 
 
+def sheetEngines(keys, membrane):
+	"""The engines of the sheet's own mechanics, as configured: MembraneBonds first; what is off is not made.
+
+	:param keys: configuration's membrane section.
+	"""
+	strengths = {name: value for name in ("tensileStrength", "shearStrength") if (value := getattr(keys, name)) is not None}
+	sheet = [
+		yade.MembraneBonds(
+			membrane=membrane, young=keys.young, thickness=keys.thickness, poisson=keys.poisson, tensionOnly=keys.tensionOnly, **strengths
+		)
+	]
+	if keys.bendingStiffness > 0:
+		sheet.append(yade.MembraneBending(membrane=membrane, stiffness=keys.bendingStiffness))
+	return sheet
+
+
+def sheetStep(sheet):
+	"""A lower bound of the critical step [s] of the sheet alone: the highest squares of the frequencies of its engines at once."""
+	return sum(engine.criticalTimeStep() ** -2 for engine in sheet) ** -0.5
+
+
 class FlexibleMembrane(LateralBoundary):
-	"""Handles: ``membrane``, ``bonds``, ``pressureEngine`` (MembranePressure), ``radialServo`` (MembraneRadialServo), ``oRings``."""
+	"""Handles: ``membrane``, ``bonds``, ``sheet`` (the engines of :func:`sheetEngines`), ``pressureEngine`` (MembranePressure), ``radialServo``
+	(MembraneRadialServo), ``oRings``."""
 
 	name = "membrane"
 
 	def __init__(self, engines):
 		self.bonds = singleEngine(engines, "MembraneBonds")
+		others = (optionalEngine(engines, name) for name in ("MembraneBending",))
+		self.sheet = [self.bonds, *(engine for engine in others if engine)]
 		self.pressureEngine = singleEngine(engines, "MembranePressure")
 		self.radialServo = singleEngine(engines, "MembraneRadialServo")
 		self.oRings = singleEngine(engines, "MembraneORings")
@@ -90,10 +114,8 @@ class FlexibleMembrane(LateralBoundary):
 		keys = config.membrane
 		smallest, largest = float(packing.radii.min()), float(packing.radii.max())
 		membrane = generate(config, keys.particleRadius or keys.sizeRatio * smallest, smallest)
-		bonds = yade.MembraneBonds(
-			membrane=membrane, young=keys.young, thickness=keys.thickness, poisson=keys.poisson, tensionOnly=keys.tensionOnly
-		)
-		unscaled = timestep.membraneStep(config.specimen, keys.density, largest, membrane.sphereRadius, bonds.criticalTimeStep())
+		sheet = sheetEngines(keys, membrane)
+		unscaled = timestep.membraneStep(config.specimen, keys.density, largest, membrane.sphereRadius, sheetStep(sheet))
 		scaling = timestep.densityScaling(keys.densityScaling, timestep.grainStep(config.specimen, smallest), unscaled)
 		scaleDensity(membrane, scaling)
 
@@ -103,7 +125,7 @@ class FlexibleMembrane(LateralBoundary):
 
 		def engines(bottom, top):
 			before = [
-				bonds,
+				*sheet,
 				yade.MembranePressure(membrane=membrane, pressure=0.0, surface=keys.surface, timeConstant=pressureTime),
 				yade.MembraneRadialServo(membrane=membrane, pressure=0.0, areaRule=keys.areaRule, timeConstant=servoTime),
 			]
@@ -129,7 +151,7 @@ class FlexibleMembrane(LateralBoundary):
 		return (
 			f"membrane: {len(membrane.ids)} spheres of R = {1e3 * radius:.4g} mm in {membrane.rings} rings of {membrane.perRing}, "
 			f"R/r = {radius / smallest:.3g} with r = {1e3 * smallest:.4g} mm the smallest grain's radius; "
-			f"E t = {keys.young * keys.thickness:.4g} N/m, nu = {keys.poisson:.3g}"
+			f"E t = {keys.young * keys.thickness:.4g} N/m, nu = {keys.poisson:.3g}, D = {keys.bendingStiffness:.3g} N m"
 		)
 
 	@staticmethod
@@ -206,7 +228,7 @@ class FlexibleMembrane(LateralBoundary):
 		return float(numpy.linalg.norm(force, axis=1).mean()) / (pressure * particle) if pressure > 0 else 0.0
 
 	def ownLoads(self, bottom, top):
-		return membraneLoads(self.membrane, self._heights(), self.bonds, self.pressureEngine, bottom, top)
+		return membraneLoads(self.membrane, self._heights(), self.sheet, self.pressureEngine, bottom, top)
 
 	def outside(self, points):
 		"""Which points are outside.
@@ -222,7 +244,7 @@ class FlexibleMembrane(LateralBoundary):
 		return lost
 
 	def addFrequencySquare(self, square):
-		square[self.membrane.ids] += (2 / self.bonds.criticalTimeStep()) ** 2
+		square[self.membrane.ids] += (2 / sheetStep(self.sheet)) ** 2
 
 	def surface(self, startRadius):
 		"""A surface through the centres; arrays: :mod:`hexmembrane.output.vtk`."""

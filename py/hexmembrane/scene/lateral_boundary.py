@@ -138,3 +138,11 @@ def singleEngine(engines, name):
 	if len(ofType) != 1:
 		raise RuntimeError(f"Scene.engines = {len(ofType)} {name}: 1 expected; fix: load a state saved by this test")
 	return ofType[0]
+
+
+def optionalEngine(engines, name):
+	"""The one engine of a type among ``engines``, a dict of type name -> list; None without.
+
+	:raises RuntimeError: there are several.
+	"""
+	return singleEngine(engines, name) if engines.get(name) else None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a flexible membrane itself carries, read from the forces of its bonds and of its pressure.
+"""What a flexible membrane itself carries, read from the forces of its sheet (bonds, bending, self-contact) and of its pressure.
 
 The free body of half a specimen, at rest: N = F + P + T_mid - T_end, with N the soil's axial force at mid-height and F a platen's. A platen
 that carries sigma3 Ae does not give the soil sigma3: N acts on Am, which the membrane's sag makes less than Ae; P is less than the
@@ -19,7 +19,7 @@ class MembraneLoads:
 	:param axialPush: P, axial parts of the confining pressure's forces towards mid-height, mean of both halves [N].
 	:param axialPullMiddle: T_mid, axial pull of the membrane through the plane at mid-height, tension positive [N].
 	:param axialPullEnd: T_end, the same just inside the O-ring rows, mean of both ends [N].
-	:param radialPressure: the bonds' forces towards the axis over the inner area of the main body, inwards positive [Pa].
+	:param radialPressure: the sheet's forces towards the axis over the inner area of the main body, inwards positive [Pa].
 	"""
 
 	axialPush: float = 0.0
@@ -48,21 +48,25 @@ def axialPush(z, force, middle):
 	return 0.5 * float(force[z < middle].sum() - force[z >= middle].sum())
 
 
-def membraneLoads(membrane, z, bonds, pressureEngine, bottom, top):
+def membraneLoads(membrane, z, sheet, pressureEngine, bottom, top):
 	"""The :class:`MembraneLoads` of the last step.
 
 	:param membrane: a HexMembrane with O-ring rows.
 	:param z: present heights of its particles [m].
-	:param bonds: its MembraneBonds, a step run.
+	:param sheet: the engines of its own mechanics, such as MembraneBonds, a step run.
 	:param pressureEngine: its MembranePressure.
 	:param bottom: height of the bottom platen's face [m].
 	:param top: height of the top platen's face [m].
 	"""
 	middle = 0.5 * (bottom + top)
 	applied = numpy.array([force[2] for force in pressureEngine.forces()])
+
+	def pull(height):
+		return sum(engine.axialTension(height) for engine in sheet)
+
 	return MembraneLoads(
 		axialPush=axialPush(z, applied, middle),
-		axialPullMiddle=bonds.axialTension(middle),
-		axialPullEnd=sum(bonds.axialTension(height) for height in endHeights(membrane, z)) / 2,
-		radialPressure=bonds.radialShare(3),
+		axialPullMiddle=pull(middle),
+		axialPullEnd=sum(pull(height) for height in endHeights(membrane, z)) / 2,
+		radialPressure=sum(engine.radialShare(3) for engine in sheet),
 	)

@@ -52,8 +52,8 @@ def grainStep(specimen, smallest):
 	return 2 / math.sqrt(2 * CONTACTS / 3 * kn * max(translation, rotation) / sphereMass(smallest, specimen.density))
 
 
-def membraneStep(specimen, density, largest, particleRadius, bondStep):
-	"""Critical step [s] of the membrane's spheres before there are contacts: GRAINS_PER_PARTICLE grains of the largest radius and the bonds at once.
+def membraneStep(specimen, density, largest, particleRadius, sheetStep):
+	"""Critical step [s] of the membrane's spheres before there are contacts: GRAINS_PER_PARTICLE grains of the largest radius and the sheet's own springs at once.
 
 	The contacts are smooth, so they turn nothing.
 
@@ -61,11 +61,11 @@ def membraneStep(specimen, density, largest, particleRadius, bondStep):
 	:param density: of the membrane's spheres [kg/m3].
 	:param largest: largest grain radius [m].
 	:param particleRadius: of the membrane's spheres [m].
-	:param bondStep: critical step of the bonds alone [s], ``MembraneBonds.criticalTimeStep()``.
+	:param sheetStep: critical step of the sheet alone [s], its bonds and what else holds it together.
 	:returns: the step without ``membrane.densityScaling``, which multiplies it by its root.
 	"""
 	contacts = GRAINS_PER_PARTICLE * contactStiffness(specimen.emod, particleRadius, largest)
-	return 2 / math.sqrt(contacts / sphereMass(particleRadius, density) + (2 / bondStep) ** 2)
+	return 2 / math.sqrt(contacts / sphereMass(particleRadius, density) + (2 / sheetStep) ** 2)
 
 
 def densityScaling(wished, grains, membrane):

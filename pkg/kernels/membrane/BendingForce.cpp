@@ -1,0 +1,107 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "kernels/membrane/BendingForce.hpp"
+
+#include "kernels/base/Check.hpp"
+#include "kernels/base/Simd.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace hexmembrane {
+
+double bendingSpring(double plateStiffness, double spacing)
+{
+	requireNonNegative("stiffness", plateStiffness, "N m");
+	requirePositive("spacing", spacing, "m");
+	return 8 * std::sqrt(3.) * plateStiffness / (spacing * spacing);
+}
+
+double criticalStepOfBending(double spring, double mass)
+{
+	requireNonNegative("spring", spring, "N/m");
+	requirePositive("mass", mass, "kg");
+	return spring > 0 ? 2 * std::sqrt(mass / (2.25 * spring)) : std::numeric_limits<double>::infinity();
+}
+
+namespace {
+
+/// Mean of the six neighbours: `below` and `above` are shifted so that their i-th stands upper (lower) left of own[i].
+inline double meanOfSix(const double* own, const double* below, const double* above, int i)
+{
+	return ((own[i - 1] + own[i + 1]) + (below[i] + below[i + 1]) + (above[i] + above[i + 1])) / 6;
+}
+
+HEXMEMBRANE_WIDEST void bendRow(int n, const double* __restrict own, const double* __restrict below, const double* __restrict above,
+                                const double* __restrict rest, double* __restrict out)
+{
+#pragma omp simd
+	for (int i = 0; i < n; ++i) out[i] = (own[i] - meanOfSix(own, below, above, i)) - rest[i];
+}
+
+HEXMEMBRANE_WIDEST void forceRow(int n, double spring, const double* __restrict own, const double* __restrict below, const double* __restrict above,
+                                 double* __restrict out)
+{
+#pragma omp simd
+	for (int i = 0; i < n; ++i) out[i] = spring * (meanOfSix(own, below, above, i) - own[i]);
+}
+
+} // namespace
+
+BendingForce::BendingForce(const HexStencil& s, double spring, const PaddedRings& unbent)
+    : force(s.perRing, s.rings), stencil(s), kb(spring), rest(unbent), bent(s.perRing, s.rings + 2)
+{
+	requireNonNegative("spring", spring, "N/m");
+	if (s.rings < 3) reject("rings", s.rings, "no ring has neighbours on both sides", "3 rings at least");
+	if (!unbent.fits(s.perRing, 2)) reject("rest", unbent.rows(), "does not fit the tube", "2 rows of perRing vectors");
+}
+
+PaddedRings BendingForce::restOfTube(int perRing, double radius)
+{
+	requirePositive("radius", radius, "m");
+	PaddedRings rest(perRing, 2);
+	const double step = M_PI / perRing;
+	// two neighbours a whole step further round, four half a step; axially they stand in balance
+	const double inwards = radius * (1 - (2 * std::cos(2 * step) + 4 * std::cos(step)) / 6);
+	for (int odd = 0; odd < 2; ++odd)
+		for (int i = 0; i < perRing; ++i) {
+			const double angle = step * (2 * i + odd);
+			rest.set(odd, i, inwards * Vec3(std::cos(angle), std::sin(angle), 0));
+		}
+	return rest;
+}
+
+void BendingForce::act(const PaddedRings& x, const PaddedRings& from, PaddedRings& bend, PaddedRings& onParticle) const
+{
+	const int n = stencil.perRing;
+#pragma omp parallel for schedule(static)
+	for (int k = 1; k < stencil.rings - 1; ++k) {
+		const int left = HexStencil::left(k);
+		for (int a = 0; a < 3; ++a) bendRow(n, x.row(a, k), x.row(a, k - 1) + left, x.row(a, k + 1) + left, from.row(a, k % 2), bend.row(a, k + 1));
+		bend.wrap(k + 1);
+	}
+#pragma omp parallel for schedule(static)
+	for (int k = 0; k < stencil.rings; ++k) {
+		const int left = HexStencil::left(k);
+		for (int a = 0; a < 3; ++a) forceRow(n, kb, bend.row(a, k + 1), bend.row(a, k) + left, bend.row(a, k + 2) + left, onParticle.row(a, k));
+	}
+}
+
+void BendingForce::compute(const PaddedRings& position) { act(position, rest, bent, force); }
+
+void BendingForce::addAnswer(const PaddedRings& displacement, PaddedRings& sum) const
+{
+	PaddedRings bend(stencil.perRing, stencil.rings + 2), own(stencil.perRing, stencil.rings);
+	act(displacement, flat(stencil.perRing), bend, own);
+	for (int k = 0; k < stencil.rings; ++k)
+		for (int i = 0; i < stencil.perRing; ++i) sum.set(k, i, sum.get(k, i) + own.get(k, i));
+}
+
+double BendingForce::energy() const
+{
+	double sum = 0;
+	for (int k = 1; k < stencil.rings - 1; ++k)
+		for (int i = 0; i < stencil.perRing; ++i) sum += bent.get(k + 1, i).squaredNorm();
+	return 0.5 * kb * sum;
+}
+
+} // namespace hexmembrane

@@ -1,0 +1,89 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "MembraneBending.hpp"
+
+#include "base/NamedFields.hpp"
+#include "kernels/membrane/MembraneTension.hpp"
+
+namespace yade {
+
+YADE_PLUGIN((MembraneBending));
+
+void MembraneBending::requireMembrane(const string& who) const
+{
+	if (!membrane) throw std::runtime_error("MembraneBending.membrane = None: no membrane to act on; fix: MembraneBending(membrane=HexMembrane(...))");
+	membrane->requireGenerated(who);
+}
+
+Real MembraneBending::springStiffness() const
+{
+	requireMembrane("MembraneBending.springStiffness");
+	return named("MembraneBending", {}, [&] { return hexmembrane::bendingSpring(stiffness, 2 * membrane->sphereRadius); });
+}
+
+void MembraneBending::prepare()
+{
+	requireMembrane("MembraneBending");
+	const Real wanted = springStiffness();
+	if (kernel && builtFor == membrane.get() && wanted == built) return;
+	const auto rest = hexmembrane::BendingForce::restOfTube(membrane->perRing, membrane->centreRadius);
+	named("MembraneBending", {{"rings", "membrane"}}, [&] { kernel.reset(new hexmembrane::BendingForce(membrane->stencil(), wanted, rest)); });
+	built = wanted;
+	builtFor = membrane.get();
+}
+
+void MembraneBending::action() { stepOverBodies(*this); }
+
+void MembraneBending::step(StepView& view)
+{
+	kernel->compute(view.positions(*membrane));
+	view.addForces(*membrane, {{0, membrane->rings - 1}}, kernel->force, nullptr, nullptr);
+}
+
+void MembraneBending::bookStored()
+{
+	if (scene->trackEnergy) scene->energy->add(kernel->energy(), "elastBending", energyIndex, /*reset*/ true);
+}
+
+void MembraneBending::addAnswer(const hexmembrane::PaddedRings& displacement, hexmembrane::PaddedRings& sum) const { kernel->addAnswer(displacement, sum); }
+
+void MembraneBending::requireStepped(const char* what) const
+{
+	if (!kernel) throw std::runtime_error(string("MembraneBending.") + what + ": nothing computed yet; fix: run a step first");
+}
+
+Real MembraneBending::elasticEnergy() const
+{
+	requireStepped("elasticEnergy");
+	return kernel->energy();
+}
+
+vector<Vector3r> MembraneBending::forces() const
+{
+	vector<Vector3r> all;
+	for (int k = 0; k < membrane->rings; ++k)
+		for (int i = 0; i < membrane->perRing; ++i) all.push_back(kernel->force.get(k, i));
+	return all;
+}
+
+Real MembraneBending::axialTension(Real z) const
+{
+	requireStepped("axialTension");
+	hexmembrane::requireFinite("MembraneBending.axialTension: z", z, "m");
+	return hexmembrane::axialPull(membrane->positions_get(), forces(), z);
+}
+
+Real MembraneBending::radialShare(int group) const
+{
+	requireStepped("radialShare");
+	return membrane->groupPressure(group, membrane->positions_get(), forces(), "MembraneBending.radialShare");
+}
+
+Real MembraneBending::criticalTimeStep() const
+{
+	const string who = "MembraneBending.criticalTimeStep";
+	requireMembrane(who);
+	const Real mass = membrane->body(*Omega::instance().getScene(), 0, who)->state->mass;
+	return hexmembrane::criticalStepOfBending(springStiffness(), mass);
+}
+
+} // namespace yade

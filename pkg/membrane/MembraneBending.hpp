@@ -1,0 +1,68 @@
+// hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "HexMembrane.hpp"
+
+#include "compact/Stepped.hpp"
+
+#include "kernels/membrane/BendingForce.hpp"
+
+#include <core/GlobalEngine.hpp>
+
+#include <memory>
+
+namespace yade {
+
+/*! Bending stiffness of the sheet over flat arrays: all that it depends on are positions and how the membrane was generated. */
+class MembraneBending : public GlobalEngine, public Stepped {
+public:
+	void action() override;
+
+	Real elasticEnergy() const;
+	Real criticalTimeStep() const;
+	Real springStiffness() const;
+	Real axialTension(Real z) const;
+	Real radialShare(int group) const;
+
+	void prepare() override;
+	void step(StepView& view) override;
+	void bookStored() override;
+	void addAnswer(const hexmembrane::PaddedRings& displacement, hexmembrane::PaddedRings& sum) const override;
+	const HexMembrane* actsOn() const override { return membrane.get(); }
+
+private:
+	void requireMembrane(const string& who) const;
+	void requireStepped(const char* what) const;
+	vector<Vector3r> forces() const;
+
+	// Caches: rebuilt from the attributes when they are missing or other than when they were built.
+	std::unique_ptr<hexmembrane::BendingForce> kernel;
+	Real built = NaN;
+	const HexMembrane* builtFor = nullptr;
+	int energyIndex = -1;
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneBending,GlobalEngine,
+		"Bending stiffness of a :yref:`HexMembrane`, beside :yref:`MembraneBonds`. Stands before :yref:`NewtonIntegrator`.\n\n"
+		"A linear plate on the lattice, $E=\\frac{k_b}{2}\\sum_i|Bx_i-b^0_i|^2$ with $Bx_i=x_i-\\frac16\\sum_{j=1}^6x_j$ over the six neighbours and $b^0$ that of the generated membrane, which is free of moments. "
+		"The forces are $-k_bB^T(Bx-b^0)$. For neighbours at the distance $s=2R$ the energy of an area is that of a plate, $\\frac{D}{2}(\\kappa_1+\\kappa_2)^2$ with $D=k_bs^2/(8\\sqrt3)$. "
+		"The two end rings have no six neighbours: the ends carry no moment.\n\n"
+		"$b^0$ keeps its direction in space, so what turns the surface by an angle $a$ meets a pressure of the order $aD/R_c^3$, with $R_c$ the radius through the centres: 0.5 Pa for latex of 0.3 mm ($D=4\\times10^{-6}$ N m, $R_c=20$ mm). "
+		"The term $D(1-\\nu)$ of the Gaussian curvature is left out: it acts at free edges only, and a saddle with $\\kappa_1=-\\kappa_2$ costs nothing.\n\n"
+		"With :yref:`O.trackEnergy<Omega.trackEnergy>` the elastic energy is entered as 'elastBending'. Forces are the same to the last bit for any number of threads.\n\n"
+		"Errors: ``ValueError`` for parameters, ``RuntimeError`` for a membrane not generated, a body erased, a force that is not finite (with body id and iteration).\n\n"
+		"Example::\n\n\tMembraneBending(membrane=m,stiffness=5e-5)",
+		((shared_ptr<HexMembrane>,membrane,,,"The membrane. Required."))
+		((Real,stiffness,NaN,,"Bending stiffness $D$ of the plate [N m], at least 0; of a sheet of thickness $t$: $Et^3/(12(1-\\nu^2))$. Required."))
+		,/*ctor*/,
+		.add_property("springStiffness",&MembraneBending::springStiffness,"$k_b=8\\sqrt3D/(2R)^2$ [N/m].")
+		.def("elasticEnergy",&MembraneBending::elasticEnergy,"Elastic energy of the bending [J] at the last step.")
+		.def("axialTension",&MembraneBending::axialTension,(boost::python::arg("z")),"Axial force [N] that the bending carries through the horizontal plane at the height z [m], at the last step, tension positive: minus the axial forces on the particles that are not below it now; adds to :yref:`MembraneBonds.axialTension`.")
+		.def("radialShare",&MembraneBending::radialShare,(boost::python::arg("group")=3),"Pressure [Pa] that the bending adds to what reaches the soil at a group (0: all of groups 2 and 3), inwards positive: the forces of the last step over the present area; adds to :yref:`MembraneBonds.radialShare`.")
+		.def("criticalTimeStep",&MembraneBending::criticalTimeStep,"Critical time step [s] of the bending alone, $2/\\omega$ with $\\omega^2=2.25k_b/m$; inf without stiffness. A lower bound; that of bending and bonds together has at least the sum of both $\\omega^2$.")
+	);
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(MembraneBending);
+
+} // namespace yade

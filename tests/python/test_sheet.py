@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The membrane's own mechanics, from the keys of a configuration to the engines and the time step of either tier."""
+
+import math
+
+import pytest
+from hexmembrane import configuration
+from hexmembrane.measure import energy
+from hexmembrane.scene import specimen
+from hexmembrane.scene.builder import build
+from tinyTest import configure
+
+#: So stiff that the bending sets the time step.
+STIFF = 2.0
+
+
+@pytest.fixture(scope="module")
+def packing(tmp_path_factory):
+	return specimen.make(configuration.load(configure(tmp_path_factory.mktemp("packing"))), lambda text: None)
+
+
+@pytest.fixture
+def built(O, packing, tmp_path):
+	"""``built(tier, **keys of the membrane)``: the scene, its engines by class name, and what the log says."""
+
+	def make(tier, **membrane):
+		O.reset()
+		said = []
+		scene = build(configuration.load(configure(tmp_path, tier=tier, membrane=membrane)), packing, said.append)
+		inner = scene.loop.engines if scene.loop else O.engines
+		return scene, {type(engine).__name__: engine for engine in inner}, "\n".join(said)
+
+	return make
+
+
+def test_offMakesNothing(built, tier):
+	scene, engines, _ = built(tier)
+	assert "MembraneBonds" in engines and "MembraneBending" not in engines
+	assert scene.lateralBoundary.sheet == [engines["MembraneBonds"]]
+	assert engines["MembraneBonds"].tensileStrength == math.inf and engines["MembraneBonds"].shearStrength == math.inf
+
+
+def test_bendingArrives(O, built, tier):
+	built(tier)
+	step = O.dt
+	scene, engines, said = built(tier, bendingStiffness=STIFF)
+	bending = engines["MembraneBending"]
+	assert bending.stiffness == STIFF and bending in scene.lateralBoundary.sheet
+	assert "D = 2 N m" in said
+	assert O.dt < 0.5 * step and O.dt < bending.criticalTimeStep()
+	scene.setPressure(1e4)
+	O.step()
+	assert scene.criticalTimeStep() <= bending.criticalTimeStep() * 1.01
+	O.step()
+	assert dict(O.energy.items())["elastBending"] > 0
+	assert energy.current()["membrane"] == pytest.approx(dict(O.energy.items())["elastBending"] + dict(O.energy.items())["elastMembrane"], rel=1e-12)
+
+
+def test_strengthsArrive(built, tier):
+	_, engines, _ = built(tier, tensileStrength=2.0, shearStrength=3.0, poisson=0.2)
+	assert (engines["MembraneBonds"].tensileStrength, engines["MembraneBonds"].shearStrength) == (2.0, 3.0)
