@@ -48,14 +48,14 @@ def line(name, table, start, shear):
 	target = shear["sigma3_target"][0]
 	arrives = 100 * shear["sigma3_transmitted_group3"] / target
 	without = arrives - 100 * shear["sigma3_membrane"] / target
-	q, corrected = 1e-3 * shear["q"], 1e-3 * shear["q_corrected"]
+	q, cell = 1e-3 * shear["q"], 1e-3 * shear["q_cell"]
 	volumetric = [100 * shear[f"volumetric_strain_{source}"][-1] for source in ("radius", "volume")]
 	cells = (
 		name,
 		f"{table['porosity'][start - 1]:.4f}",
 		f"{q[peak]:.0f} kPa at {100 * shear['axial_strain'][peak]:.1f} %",
 		f"{q[-1]:.0f}",
-		f"{corrected.max():.0f}, {corrected[-1]:.0f}",
+		f"{cell.max():.0f}, {cell[-1]:.0f}",
 		f"{volumetric[0]:+.1f} %, {volumetric[1]:+.1f} %",
 		f"{arrives.min():.2f} to {arrives.max():.2f} %",
 		f"{without.min():.2f} to {without.max():.2f} %",

@@ -47,7 +47,7 @@ SHORT = {
 }
 HEADER = (
 	"| scheme | state | rows beside the platens | main body | soil radial: end slices | middle half | axial: end slices | middle half "
-	"| q | q corrected |"
+	"| q of the platens | q of the soil |"
 )
 #: The force that holds rows in their place is unbalanced for YADE, 0.0095 of the mean contact force at rest.
 HELD_UNBALANCED = 0.011
@@ -65,7 +65,7 @@ def apply(name):
 def profileAndRow(test, slices):
 	"""The profile of the test's scene and the last row of its records, as JSON takes them."""
 	test.advance(1)  # a loaded state has contacts but no forces of bonds yet
-	stress = profile.measure(test.scene, test.grains.ids, slices)
+	stress = profile.measure(test.scene, slices)
 	lists = {key: value.tolist() if isinstance(value, numpy.ndarray) else value for key, value in vars(stress).items()}
 	membrane = test.scene.lateralBoundary.membrane
 	return {**lists, "group": list(membrane.groups)[:: membrane.perRing], "row": test.lastRow}
@@ -137,7 +137,7 @@ def table(results, states, slices):
 			for key in ("radial", "axial"):
 				stress = 1e-3 * numpy.array(state[key])
 				values += [0.5 * (stress[0] + stress[-1]), stress[middle].mean()]
-			values += [1e-3 * state["row"][column] for column in ("q", "q_corrected")]
+			values += [1e-3 * state["row"][column] for column in ("q_cell", "q")]
 			lines.append(f"| {title} | {name} | " + " | ".join(f"{value:.1f}" for value in values) + " |")
 	return "\n".join(lines)
 

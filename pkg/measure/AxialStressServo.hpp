@@ -25,7 +25,7 @@ private:
 	YADE_CLASS_BASE_DOC_ATTRS(AxialStressServo,GlobalEngine,
 		"Brings the axial stress in the middle half of the soil, from its own contacts (:yref:`SoilMeasure`), to a target, by the stress that a :yref:`PlatenDrive` in mode 'stress' holds. Stands before that drive.\n\n"
 		"A platen that carries $\\sigma_3 A_e$ does not give the soil an axial stress of $\\sigma_3$: the membrane's inner surface encloses less than the platen's face, the membrane pulls at the O-rings, and rows beside the platens that are pressed radially have no axial share. "
-		"An integral controller multiplies the drive's stress by a factor $f$: $T\\dot f=(\\sigma-\\sigma_a)/\\sigma$ with $\\sigma_a$ the soil's axial stress, within 1/:yref:`maxFactor<AxialStressServo.maxFactor>` and maxFactor, corrected 20 times within $T$; the drive gets $f\\sigma$ in every step. It rests while the drive is in mode 'velocity'.\n\n"
+		"An integral controller multiplies the drive's stress by a factor $f$: $T\\dot f=(\\sigma-\\sigma_a)/\\sigma$ with $\\sigma_a$ the soil's axial stress, within 1/:yref:`maxFactor<AxialStressServo.maxFactor>` and maxFactor, corrected 20 times within $T$; the drive gets $f\\sigma$ in every step. The factor waits while the drive is not :yref:`settled<PlatenDrive.settled>`: what the platen does not carry yet is no error of it. It rests while the drive is in mode 'velocity'.\n\n"
 		"Errors: ``ValueError`` for parameters, ``RuntimeError`` for what is missing.\n\n"
 		"Example::\n\n\tAxialStressServo(measure=SoilMeasure(membrane=m,bottomPlaten=0,topPlaten=1),drive=top,stress=100e3,timeConstant=.01)",
 		((shared_ptr<SoilMeasure>,measure,,,"What is measured. Required."))

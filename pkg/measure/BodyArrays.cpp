@@ -80,12 +80,13 @@ boost::python::object BodyArrays::masses(const vector<Body::id_t>& ids)
 	return numbers(ids, [](const Body& body) { return body.state->mass; });
 }
 
-void BodyArrays::setReference(const vector<Body::id_t>& ids)
+void BodyArrays::setReference()
 {
-	forEachBody(ids, [](size_t, const Body& body) {
-		body.state->refPos = body.state->pos;
-		body.state->refOri = body.state->ori;
-	});
+	for (const auto& body : *currentScene().bodies) {
+		if (!body) continue;
+		body->state->refPos = body->state->pos;
+		body->state->refOri = body->state->ori;
+	}
 }
 
 } // namespace yade

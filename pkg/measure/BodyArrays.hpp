@@ -17,7 +17,7 @@ public:
 	static boost::python::object forces(const vector<Body::id_t>& ids);
 	static boost::python::object radii(const vector<Body::id_t>& ids);
 	static boost::python::object masses(const vector<Body::id_t>& ids);
-	static void setReference(const vector<Body::id_t>& ids);
+	static void setReference();
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BodyArrays,Serializable,
@@ -31,7 +31,7 @@ public:
 		.def("forces",&BodyArrays::forces,boost::python::arg("ids"),"Sums of all forces in the last step [N], (N, 3).").staticmethod("forces")
 		.def("radii",&BodyArrays::radii,boost::python::arg("ids"),"Radii of spheres [m], (N,).").staticmethod("radii")
 		.def("masses",&BodyArrays::masses,boost::python::arg("ids"),"Masses [kg], (N,).").staticmethod("masses")
-		.def("setReference",&BodyArrays::setReference,boost::python::arg("ids"),"Makes the present places and orientations those that displacements count from (``refPos``, ``refOri``).").staticmethod("setReference")
+		.def("setReference",&BodyArrays::setReference,"Makes the present places and orientations of all bodies those that displacements count from (``refPos``, ``refOri``).").staticmethod("setReference")
 	);
 	// clang-format on
 };

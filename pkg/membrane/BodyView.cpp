@@ -8,6 +8,7 @@
 #include <core/Interaction.hpp>
 #include <pkg/common/NormShearPhys.hpp>
 #include <pkg/common/Sphere.hpp>
+#include <pkg/dem/ScGeom.hpp>
 #include <pkg/dem/NewtonIntegrator.hpp>
 
 namespace yade {
@@ -180,8 +181,15 @@ void forEachInteraction(const Scene& scene, const string& who, const VisitContac
 		if (!geom || !phys)
 			throw std::runtime_error(who + ": contacts of " + interaction->phys->getClassName() +
 			                         " do not tell their forces; fix: a contact law whose IPhys derives from NormShearPhys");
-		const auto centre = [&](const Body& body) { return dynamic_cast<const Sphere*>(body.shape.get()) ? body.state->pos : geom->contactPoint; };
-		visit({a->getId(), b->getId(), centre(*a), centre(*b), geom->contactPoint, phys->normalForce + phys->shearForce,
+		// where the centres were when the forces were computed: NewtonIntegrator has moved them since
+		const auto* overlapping = dynamic_cast<const ScGeom*>(geom);
+		const auto centre = [&](const Body& body, Real side) -> Vector3r {
+			const auto* sphere = dynamic_cast<const Sphere*>(body.shape.get());
+			if (!sphere) return geom->contactPoint;
+			return overlapping ? Vector3r(geom->contactPoint + side * (sphere->radius - 0.5 * overlapping->penetrationDepth) * geom->normal)
+			                   : body.state->pos;
+		};
+		visit({a->getId(), b->getId(), centre(*a, -1), centre(*b, 1), geom->contactPoint, phys->normalForce + phys->shearForce,
 		       phys->normalForce.dot(geom->normal)});
 	}
 }

@@ -99,12 +99,17 @@ class Membrane:
 	densityScaling: Optional[float] = key(
 		1.0, "factor on the mass of the membrane's spheres, for a longer time step where they set it; none: as much as lets the grains set it", "", low=1
 	)
-	bendingStiffness: float = key(
-		0.0,
-		"bending stiffness D of the sheet, of a plate E t^3/(12 (1 - nu^2)); 0: none; over a hollow of radius a between grains the sheet sags by "
-		"pressure a^4/(64 D) when D alone carries it",
-		"N m",
+	bendingStiffness: Optional[float] = key(
+		None, "bending stiffness D of the sheet, of a plate E t^3/(12 (1 - nu^2)); 0: none; without a value it follows from sag", "N m", low=0
+	)
+	sag: float = key(
+		0.015,
+		"sag of the sheet over a hollow between grains that D = pressure r^3/(64 sag) allows, as a share of the mean grain's radius r, the hollow's radius: "
+		"grains scaled up need a stiffer sheet to sag as little as a laboratory's does over its sand; used without bendingStiffness",
+		"",
 		low=0,
+		high=1,
+		openLow=True,
 	)
 	tensileStrength: Optional[float] = key(None, "tension at which a bond of two membrane spheres breaks; none: never", "N", low=0, openLow=True)
 	shearStrength: Optional[float] = key(
@@ -187,6 +192,14 @@ class Platens:
 
 	thickness: Optional[float] = key(None, "thickness; none: the membrane's end rows plus twice the largest travel", "m", low=0, openLow=True)
 	friction: float = key(0.3, "coefficient of friction on the platens, no rolling friction; with grains the lesser of both acts", "", low=0, high=5)
+	consolidationFriction: Optional[float] = key(
+		0.0,
+		"the same until the end of consolidation; none: friction; rough platens hold the soil's ends back as the specimen shrinks, and its radial "
+		"stress there is then below the pressure",
+		"",
+		low=0,
+		high=5,
+	)
 
 
 @dataclasses.dataclass

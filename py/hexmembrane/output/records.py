@@ -40,8 +40,8 @@ COLUMNS = (
 		"mean axial stress of the soil over V from its own contacts, sum F (x) l/V, see SoilMeasure; compression positive",
 	),
 	Column("soil_radial", "Pa", "the same, mean of the two horizontal normal stresses"),
-	Column("soil_axial_middle", "Pa", "soil_axial of the middle half of the height, branches cut at its planes"),
-	Column("soil_radial_middle", "Pa", "soil_radial of the middle half"),
+	Column("soil_axial_middle", "Pa", "soil_axial of the middle half of the height, branches cut at its planes; compression positive"),
+	Column("soil_radial_middle", "Pa", "the same of soil_radial"),
 	Column(
 		"boundary_axial",
 		"Pa",

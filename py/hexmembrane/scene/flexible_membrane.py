@@ -70,10 +70,24 @@ def scaleDensity(membrane, factor):
 		state.inertia *= factor
 
 
-def sheetEngines(keys, membrane):
+def bendingStiffness(config, radii):
+	"""D of the sheet [N m], as configured, or so that it sags over a hollow of the mean grain's radius r by the configured share of r.
+
+	A clamped plate of radius a under the pressure p sags by p a^4/(64 D).
+
+	:param radii: of the grains [m].
+	"""
+	keys = config.membrane
+	if keys.bendingStiffness is not None:
+		return keys.bendingStiffness
+	return config.consolidation.pressure * float((radii**3).mean()) / (64 * keys.sag)
+
+
+def sheetEngines(keys, membrane, bending):
 	"""The engines of the sheet's own mechanics, as configured: MembraneBonds first; what is off is not made.
 
 	:param keys: configuration's membrane section.
+	:param bending: D of the sheet [N m].
 	"""
 	strengths = {name: value for name in ("tensileStrength", "shearStrength") if (value := getattr(keys, name)) is not None}
 	sheet = [
@@ -81,8 +95,8 @@ def sheetEngines(keys, membrane):
 			membrane=membrane, young=keys.young, thickness=keys.thickness, poisson=keys.poisson, tensionOnly=keys.tensionOnly, **strengths
 		)
 	]
-	if keys.bendingStiffness > 0:
-		sheet.append(yade.MembraneBending(membrane=membrane, stiffness=keys.bendingStiffness))
+	if bending > 0:
+		sheet.append(yade.MembraneBending(membrane=membrane, stiffness=bending))
 	return sheet
 
 
@@ -93,7 +107,7 @@ def sheetStep(sheet):
 
 class FlexibleMembrane(LateralBoundary):
 	"""Handles: ``membrane``, ``bonds``, ``sheet`` (the engines of :func:`sheetEngines`), ``pressureEngine`` (MembranePressure), ``radialServo``
-	(MembraneRadialServo), ``oRings``."""
+	(MembraneRadialServo, None without rows beside the platens), ``oRings``."""
 
 	name = "membrane"
 
@@ -102,7 +116,7 @@ class FlexibleMembrane(LateralBoundary):
 		others = (optionalEngine(engines, name) for name in ("MembraneBending",))
 		self.sheet = [self.bonds, *(engine for engine in others if engine)]
 		self.pressureEngine = singleEngine(engines, "MembranePressure")
-		self.radialServo = singleEngine(engines, "MembraneRadialServo")
+		self.radialServo = optionalEngine(engines, "MembraneRadialServo")
 		self.oRings = singleEngine(engines, "MembraneORings")
 		self.membrane = self.bonds.membrane
 		self._triangles = numpy.array([tuple(t) for t in self.membrane.triangles])
@@ -114,7 +128,8 @@ class FlexibleMembrane(LateralBoundary):
 		keys = config.membrane
 		smallest, largest = float(packing.radii.min()), float(packing.radii.max())
 		membrane = generate(config, keys.particleRadius or keys.sizeRatio * smallest, smallest)
-		sheet = sheetEngines(keys, membrane)
+		bending = bendingStiffness(config, packing.radii)
+		sheet = sheetEngines(keys, membrane, bending)
 		unscaled = timestep.membraneStep(config.specimen, keys.density, largest, membrane.sphereRadius, sheetStep(sheet))
 		scaling = timestep.densityScaling(keys.densityScaling, timestep.grainStep(config.specimen, smallest), unscaled)
 		scaleDensity(membrane, scaling)
@@ -127,8 +142,9 @@ class FlexibleMembrane(LateralBoundary):
 			before = [
 				*sheet,
 				yade.MembranePressure(membrane=membrane, pressure=0.0, surface=keys.surface, timeConstant=pressureTime),
-				yade.MembraneRadialServo(membrane=membrane, pressure=0.0, areaRule=keys.areaRule, timeConstant=servoTime),
 			]
+			if 2 in membrane.groups:
+				before.append(yade.MembraneRadialServo(membrane=membrane, pressure=0.0, areaRule=keys.areaRule, timeConstant=servoTime))
 			return before, [yade.MembraneORings(membrane=membrane, mode=keys.oRings, bottomPlaten=bottom, topPlaten=top)]
 
 		return BoundaryParts(
@@ -139,19 +155,19 @@ class FlexibleMembrane(LateralBoundary):
 			criticalStep=math.sqrt(scaling) * unscaled,
 			around={"membrane": membrane},
 			log=[
-				cls._description(keys, membrane, smallest),
+				cls._description(keys, membrane, smallest, bending),
 				*cls._scaled(config, packing, membrane, scaling, unscaled),
 				*cls._warning(config, packing),
 			],
 		)
 
 	@staticmethod
-	def _description(keys, membrane, smallest):
+	def _description(keys, membrane, smallest, bending):
 		radius = membrane.sphereRadius
 		return (
 			f"membrane: {len(membrane.ids)} spheres of R = {1e3 * radius:.4g} mm in {membrane.rings} rings of {membrane.perRing}, "
 			f"R/r = {radius / smallest:.3g} with r = {1e3 * smallest:.4g} mm the smallest grain's radius; "
-			f"E t = {keys.young * keys.thickness:.4g} N/m, nu = {keys.poisson:.3g}, D = {keys.bendingStiffness:.3g} N m"
+			f"E t = {keys.young * keys.thickness:.4g} N/m, nu = {keys.poisson:.3g}, D = {bending:.3g} N m"
 		)
 
 	@staticmethod
@@ -193,7 +209,8 @@ class FlexibleMembrane(LateralBoundary):
 
 	def setPressure(self, pressure):
 		self.pressureEngine.pressure = pressure
-		self.radialServo.pressure = pressure
+		if self.radialServo:
+			self.radialServo.pressure = pressure
 
 	def meanRadius(self):
 		"""Mean radius [m] of the inner surface for Eq. 6: over the particles of groups 2 and 3, each about its ring's centroid.
@@ -215,7 +232,7 @@ class FlexibleMembrane(LateralBoundary):
 		return self.pressureEngine.area
 
 	def transmittedPressure(self, group):
-		return self.membrane.transmittedPressure(group)
+		return self.membrane.transmittedPressure(3 if group == 2 and not self.radialServo else group)
 
 	def brokenBonds(self):
 		return self.bonds.brokenCount
@@ -251,7 +268,7 @@ class FlexibleMembrane(LateralBoundary):
 		membrane = self.membrane
 		ids, triangles, group = membrane.ids, self._triangles, self._group
 		x, u = yade.BodyArrays.positions(ids), yade.BodyArrays.displacements(ids)
-		beside = self.radialServo.factor * self.radialServo.pressure
+		beside = self.radialServo.factor * self.radialServo.pressure if self.radialServo else self.appliedPressure
 		points = {
 			"id": numpy.array(ids),
 			"group": group,

@@ -74,9 +74,10 @@ class Scene:
 		self.lateralBoundary.addFrequencySquare(square)
 		return timestep.contactStep(*_springs(), *_masses(), square)
 
-	def setFriction(self, coefficient):
-		"""Give the grains, and the contacts that they have, a coefficient of friction; the lesser of two materials acts."""
-		O.materials["grain"].friction = coefficient
+	def setFriction(self, grains, platens):
+		"""Give the grains and the platens, and the contacts that they have, coefficients of friction; the lesser of two materials acts."""
+		O.materials["grain"].friction = grains
+		O.materials["platen"].friction = platens
 		for contact in O.interactions:
 			contact.phys.tangensOfFrictionAngle = min(O.bodies[i].material.friction for i in (contact.id1, contact.id2))
 
