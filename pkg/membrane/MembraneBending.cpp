@@ -57,25 +57,17 @@ Real MembraneBending::elasticEnergy() const
 	return kernel->energy();
 }
 
-vector<Vector3r> MembraneBending::forces() const
-{
-	vector<Vector3r> all;
-	for (int k = 0; k < membrane->rings; ++k)
-		for (int i = 0; i < membrane->perRing; ++i) all.push_back(kernel->force.get(k, i));
-	return all;
-}
-
 Real MembraneBending::axialTension(Real z) const
 {
 	requireStepped("axialTension");
 	hexmembrane::requireFinite("MembraneBending.axialTension: z", z, "m");
-	return hexmembrane::axialPull(membrane->positions_get(), forces(), z);
+	return hexmembrane::axialPull(membrane->positions_get(), kernel->force.vectors(), z);
 }
 
 Real MembraneBending::radialShare(int group) const
 {
 	requireStepped("radialShare");
-	return membrane->groupPressure(group, membrane->positions_get(), forces(), "MembraneBending.radialShare");
+	return membrane->groupPressure(group, membrane->positions_get(), kernel->force.vectors(), "MembraneBending.radialShare");
 }
 
 Real MembraneBending::criticalTimeStep() const

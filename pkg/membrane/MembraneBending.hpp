@@ -33,7 +33,6 @@ public:
 private:
 	void requireMembrane(const string& who) const;
 	void requireStepped(const char* what) const;
-	vector<Vector3r> forces() const;
 
 	// Caches: rebuilt from the attributes when they are missing or other than when they were built.
 	std::unique_ptr<hexmembrane::BendingForce> kernel;

@@ -147,31 +147,20 @@ vector<Real> MembraneBonds::normalForces()
 	return forces;
 }
 
-vector<Vector3r> MembraneBonds::steppedPositions() const
-{
-	vector<Vector3r> x;
-	for (int k = 0; k < membrane->rings; ++k)
-		for (int i = 0; i < membrane->perRing; ++i) x.push_back(kernel->position.get(k, i));
-	return x;
-}
-
 Real MembraneBonds::axialTension(Real z)
 {
 	requireStepped("axialTension");
 	hexmembrane::requireFinite("MembraneBonds.axialTension: z", z, "m");
 	const AtLastStep then(kernel->position, stepped);
 	const auto onFirst = hexmembrane::bondForces(*kernel, state());
-	return hexmembrane::axialTension(membrane->stencil(), steppedPositions(), onFirst, z);
+	return hexmembrane::axialTension(membrane->stencil(), kernel->position.vectors(), onFirst, z);
 }
 
 Real MembraneBonds::radialShare(int group)
 {
 	requireStepped("radialShare");
 	const AtLastStep then(kernel->position, stepped);
-	vector<Vector3r> forces;
-	for (int k = 0; k < membrane->rings; ++k)
-		for (int i = 0; i < membrane->perRing; ++i) forces.push_back(kernel->force.get(k, i));
-	return membrane->groupPressure(group, steppedPositions(), forces, "MembraneBonds.radialShare");
+	return membrane->groupPressure(group, kernel->position.vectors(), kernel->force.vectors(), "MembraneBonds.radialShare");
 }
 
 Real MembraneBonds::criticalTimeStep() const

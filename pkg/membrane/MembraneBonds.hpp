@@ -39,8 +39,6 @@ public:
 private:
 	hexmembrane::BondLaw law() const;
 	void requireStepped(const char* what) const;
-	//! Positions that the last step's forces belong to.
-	vector<Vector3r> steppedPositions() const;
 
 	// Caches: rebuilt from the attributes when they are missing or other than when they were built.
 	std::unique_ptr<hexmembrane::BondForce> kernel;

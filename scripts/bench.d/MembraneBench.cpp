@@ -1,8 +1,11 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 // Cost of the membrane kernels, in ns a membrane particle and step (counter perParticle), fast against reference.
+#include "kernels/membrane/BendingForce.hpp"
 #include "kernels/membrane/BondForce.hpp"
 #include "kernels/membrane/HexLattice.hpp"
 #include "kernels/membrane/PressureForce.hpp"
+#include "kernels/membrane/SelfContact.hpp"
+#include "tests/kernels/oracle/BendingForceReference.hpp"
 #include "tests/kernels/oracle/BondForceReference.hpp"
 #include "tests/kernels/oracle/PressureForceReference.hpp"
 
@@ -89,6 +92,40 @@ void bondsReference(benchmark::State& state)
 	perParticle(state, l.particles());
 }
 
+void bending(benchmark::State& state)
+{
+	const HexLattice l = membrane(state);
+	reference::Memory bonds;
+	const BondForce placed = loaded(l, law(0), bonds);
+	BendingForce kernel(l, 100, BendingForce::restOfTube(l.perRing, l.centreRadius));
+	for (auto _ : state) {
+		kernel.compute(placed.position);
+		benchmark::DoNotOptimize(kernel.force.row(0, 0));
+	}
+	perParticle(state, l.particles());
+}
+
+void bendingReference(benchmark::State& state)
+{
+	const HexLattice l = membrane(state);
+	for (auto _ : state) benchmark::DoNotOptimize(reference::bendingForces(l.bonds, 100, l.positions, l.positions));
+	perParticle(state, l.particles());
+}
+
+/// An open sheet: nothing touches.
+void selfContact(benchmark::State& state)
+{
+	const HexLattice l = membrane(state);
+	reference::Memory bonds;
+	const BondForce placed = loaded(l, law(0), bonds);
+	SelfContact kernel(l, l.sphereRadius, 1e4);
+	for (auto _ : state) {
+		kernel.compute(placed.position);
+		benchmark::DoNotOptimize(kernel.touching().size());
+	}
+	perParticle(state, l.particles());
+}
+
 void pressure(benchmark::State& state, bool inner)
 {
 	const HexLattice l = membrane(state);
@@ -113,6 +150,9 @@ void pressureReference(benchmark::State& state)
 BENCHMARK(bondsCentral)->Arg(500)->Arg(250);
 BENCHMARK(bondsWithShear)->Arg(500)->Arg(250);
 BENCHMARK(bondsReference)->Arg(500);
+BENCHMARK(bending)->Arg(500)->Arg(250);
+BENCHMARK(bendingReference)->Arg(500);
+BENCHMARK(selfContact)->Arg(500)->Arg(250);
 BENCHMARK_CAPTURE(pressure, inner, true)->Arg(500)->Arg(250);
 BENCHMARK_CAPTURE(pressure, centre, false)->Arg(500)->Arg(250);
 BENCHMARK(pressureReference)->Arg(500);

@@ -6,6 +6,7 @@ of stiffness. What is compared is measured in one process, in turns where the sc
 Arguments: folder of the results, parts to run (default: all):
   membrane   flexible against stock, R = 0.5 and 0.25 mm, and against the rigid wall
   age        the flexible scene of R = 0.5 mm fresh, after 5,000 and after 50,000 steps
+  sheet      the flexible scene of R = 0.5 mm without and with bending stiffness and self-contact of its sheet
   threads    the flexible and the rigid scene with one thread and with two (yade -j2)
   size       soil alone, 7,000 to 1,000,000 spheres; and the memory that the tier takes beside YADE's bodies
 """
@@ -72,6 +73,28 @@ def age(packed, rows):
 		print("after %6d steps: %.3f ms, %d contacts" % (steps, value, contacts()), flush=True)
 
 
+def bending(membrane):
+	return yade.MembraneBending(membrane=membrane, stiffness=5e-5)
+
+
+def selfContact(membrane):
+	return yade.MembraneSelfContact(membrane=membrane)
+
+
+def sheet(packed, rows):
+	"""In turns, so that the machine's mood is the same for all; the time step is that of the plain sheet."""
+	scenes = {"bonds alone": (), "bending": (bending,), "self-contact": (selfContact,), "bending and self-contact": (bending, selfContact)}
+	times = {name: [] for name in scenes}
+	for _ in range(3):
+		for name, engines in scenes.items():
+			flexible("compact", packed, 0.5e-3, engines)
+			times[name].append(measure(WARM))
+	for name, values in times.items():
+		share = statistics.median(mine / plain for mine, plain in zip(values, times["bonds alone"]))
+		rows.append(("flexible, R = 0.50 mm, sheet with " + name, "", contacts(), statistics.median(values), "", share))
+		print("sheet with %s: %.3f ms, %.3f times" % (name, statistics.median(values), share), flush=True)
+
+
 def threads(packed, rows):
 	"""One thread and two in turns on the same scene, in a process with two."""
 	scenes = {"flexible, R = 0.50 mm": lambda: flexible("compact", packed, 0.5e-3), "flexible, R = 0.25 mm": lambda: flexible("compact", packed, 0.25e-3), "rigid": lambda: rigid("compact", packed)}
@@ -131,7 +154,7 @@ def main(arguments):
 		if part == "size":
 			sizes(rows)
 		else:
-			{"membrane": membranes, "age": age, "threads": threads}[part](packing(folder), rows)
+			{"membrane": membranes, "age": age, "sheet": sheet, "threads": threads}[part](packing(folder), rows)
 	write(os.path.join(folder, "compact-%s-%d.csv" % ("-".join(parts), O.numThreads)), ["scene", "spheres", "contacts", "compact (ms)", "stock (ms)", "ratio, or ns a sphere"], rows)
 
 

@@ -28,8 +28,11 @@ def material(tier, label, friction, rolling, bonded=False):
 	)
 
 
-def flexible(tier, packed, particleRadius):
-	"""The specimen in its membrane."""
+def flexible(tier, packed, particleRadius, sheet=()):
+	"""The specimen in its membrane.
+
+	:param sheet: of the compact tier: functions of the membrane that make engines beside its bonds.
+	"""
 	O.reset()
 	material(tier, "grain", 0.4, 0.5)
 	material(tier, "platen", 0.3, 0)
@@ -49,7 +52,7 @@ def flexible(tier, packed, particleRadius):
 	smallest = min(float(packed.radii.min()), membrane.sphereRadius)
 	if tier == "compact":
 		bonds = yade.MembraneBonds(membrane=membrane, young=1e6, thickness=3e-4, poisson=1 / 3)
-		O.engines = [yade.ForceResetter(), yade.CompactLoop(engines=[bonds, *pressing, *drives, rings], damping=0.2, substeps=SUBSTEPS)]
+		O.engines = [yade.ForceResetter(), yade.CompactLoop(engines=[bonds, *(make(membrane) for make in sheet), *pressing, *drives, rings], damping=0.2, substeps=SUBSTEPS)]
 	else:
 		O.engines = [
 			yade.ForceResetter(),

@@ -147,8 +147,8 @@ def test_servoBringsTheSoilToItsTarget(O, tier):
 
 
 def test_servoRestsWhileTheDriveHasAVelocity(O, tier):
-	drive, servo = servoed(tier)
-	run(200)
+	drive, servo = servoed(tier, target=20.0)
+	run(4000)
 	drive.mode, drive.velocity = "velocity", 0.01
 	kept = servo.factor, drive.stress
 	run(400)
@@ -156,8 +156,8 @@ def test_servoRestsWhileTheDriveHasAVelocity(O, tier):
 
 
 def test_servoSavedAndLoadedIsTheSameRun(O, tier, tmp_path):
-	drive, servo = servoed(tier)
-	run(300)
+	drive, servo = servoed(tier, target=20.0)
+	run(4000)
 	file = str(tmp_path / "half.yade.gz")
 	O.save(file)
 	run(300)

@@ -8,7 +8,6 @@
 using namespace hexmembrane;
 using support::load;
 using support::relativeDifference;
-using support::unload;
 
 namespace {
 
@@ -61,8 +60,8 @@ double worstDifference(const BondLaw& l, int* brokenBonds = nullptr)
 		pair.p.spin = support::randomVectors(pair.tube.positions.size(), 500., 20 + s);
 		for (size_t i = 0; i < pair.p.position.size(); ++i) pair.p.position[i] += dt * pair.p.velocity[i];
 		pair.step(dt);
-		worst = std::max(worst, relativeDifference(unload(pair.fast.force, pair.tube), pair.p.force));
-		if (l.ks > 0) worst = std::max(worst, relativeDifference(unload(pair.fast.torque, pair.tube), pair.p.torque));
+		worst = std::max(worst, relativeDifference(pair.fast.force.vectors(), pair.p.force));
+		if (l.ks > 0) worst = std::max(worst, relativeDifference(pair.fast.torque.vectors(), pair.p.torque));
 	}
 	if (brokenBonds) {
 		*brokenBonds = 0;
@@ -96,8 +95,7 @@ TEST(BondForce, generatedMembraneIsFreeOfStress)
 {
 	Pair pair(law(1e5));
 	pair.step(0);
-	for (const auto& f : unload(pair.fast.force, pair.tube))
-		ASSERT_LT(f.norm(), 1e-14 * 1e5 * 2 * pair.tube.sphereRadius) << "rounding of a length, times kn";
+	for (const auto& f : pair.fast.force.vectors()) ASSERT_LT(f.norm(), 1e-14 * 1e5 * 2 * pair.tube.sphereRadius) << "rounding of a length, times kn";
 }
 
 TEST(BondForce, forceIsMinusGradientOfEnergy)
@@ -105,7 +103,7 @@ TEST(BondForce, forceIsMinusGradientOfEnergy)
 	Pair pair(law(346));
 	support::shake(pair.p.position, 2e-4, 3);
 	pair.step(0);
-	const auto force = unload(pair.fast.force, pair.tube);
+	const auto force = pair.fast.force.vectors();
 	const double h = 1e-7;
 	double worst = 0, size = 0;
 	for (const int v : {0, 5, pair.tube.at(3, 0), pair.tube.at(4, pair.tube.perRing - 1), pair.tube.particles() - 1})
@@ -132,7 +130,7 @@ TEST(BondForce, neitherResultantNorMoment)
 	pair.step(1e-4);
 	Vec3 resultant = Vec3::Zero(), moment = Vec3::Zero();
 	double size = 0;
-	const auto force = unload(pair.fast.force, pair.tube), torque = unload(pair.fast.torque, pair.tube);
+	const auto force = pair.fast.force.vectors(), torque = pair.fast.torque.vectors();
 	for (size_t i = 0; i < force.size(); ++i) {
 		resultant += force[i];
 		moment += pair.p.position[i].cross(force[i]) + torque[i];
@@ -183,7 +181,7 @@ TEST(BondForce, breaksInTensionAndCarriesNoTensionAfter)
 			for (int i = 0; i < pair.tube.perRing; ++i) pair.p.position[pair.tube.at(k, i)][2] += lift;
 		pair.step(0);
 		const int broken = std::count(pair.fastState.broken.begin(), pair.fastState.broken.end(), 1);
-		const auto force = unload(pair.fast.force, pair.tube);
+		const auto force = pair.fast.force.vectors();
 		if (lift < limit && broken == 0)
 			EXPECT_GT(force[pair.tube.at(3, 0)][2], 0);
 		else {
@@ -198,7 +196,7 @@ TEST(BondForce, tensionOnlyCarriesNoCompression)
 	Pair pair(law(346, 0, inf, inf, 0, true));
 	for (auto& x : pair.p.position) x *= 0.97;
 	pair.step(0);
-	for (const auto& f : unload(pair.fast.force, pair.tube)) ASSERT_EQ(f.norm(), 0);
+	for (const auto& f : pair.fast.force.vectors()) ASSERT_EQ(f.norm(), 0);
 }
 
 // A bond without a direction has no force. From kn L0 = 4 N on, a force over the smallest number there is would not be finite; the last kn is 200 N.
@@ -209,7 +207,7 @@ TEST(BondForce, coincidentParticlesGiveNoNan)
 			Pair pair(law(kn, ks));
 			pair.p.position[1] = pair.p.position[0];
 			pair.step(0);
-			EXPECT_LT(relativeDifference(unload(pair.fast.force, pair.tube), pair.p.force), 1e-12) << "kn " << kn << ", ks " << ks;
+			EXPECT_LT(relativeDifference(pair.fast.force.vectors(), pair.p.force), 1e-12) << "kn " << kn << ", ks " << ks;
 		}
 }
 
@@ -221,7 +219,7 @@ TEST(BondForce, almostCoincidentParticlesGiveNoNan)
 		pair.p.position[0] = Vec3::Zero();
 		pair.p.position[1] = Vec3(gap, 0, 0);
 		pair.step(0);
-		for (const Vec3& f : unload(pair.fast.force, pair.tube)) ASSERT_TRUE(f.allFinite()) << "gap " << gap;
+		for (const Vec3& f : pair.fast.force.vectors()) ASSERT_TRUE(f.allFinite()) << "gap " << gap;
 	}
 }
 
@@ -234,7 +232,7 @@ TEST(BondForce, threadsDoNotChangeABit)
 		pair.p.velocity = support::randomVectors(pair.tube.positions.size(), 1., 5);
 		support::shake(pair.p.position, 2e-4, 7);
 		pair.step(1e-4);
-		results.push_back(unload(pair.fast.force, pair.tube));
+		results.push_back(pair.fast.force.vectors());
 	}
 	omp_set_num_threads(1);
 	EXPECT_EQ(relativeDifference(results[1], results[0]), 0);

@@ -61,14 +61,6 @@ inline PaddedRings rowsOf(const HexStencil& s, const std::vector<Vec3>& values)
 	return field;
 }
 
-inline std::vector<Vec3> unload(const PaddedRings& field, const HexStencil& s)
-{
-	std::vector<Vec3> values;
-	for (int k = 0; k < s.rings; ++k)
-		for (int i = 0; i < s.perRing; ++i) values.push_back(field.get(k, i));
-	return values;
-}
-
 /// Adds the centres of both ends, so that the tube becomes a closed surface.
 inline void closeTube(HexLattice& tube)
 {

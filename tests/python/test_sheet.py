@@ -34,14 +34,14 @@ def built(O, packing, tmp_path):
 
 
 def test_offMakesNothing(built, tier):
-	scene, engines, _ = built(tier)
-	assert "MembraneBonds" in engines and "MembraneBending" not in engines
+	scene, engines, _ = built(tier, bendingStiffness=0.0)
+	assert "MembraneBonds" in engines and not {"MembraneBending", "MembraneSelfContact"} & set(engines)
 	assert scene.lateralBoundary.sheet == [engines["MembraneBonds"]]
 	assert engines["MembraneBonds"].tensileStrength == math.inf and engines["MembraneBonds"].shearStrength == math.inf
 
 
 def test_bendingArrives(O, built, tier):
-	built(tier)
+	built(tier, bendingStiffness=0.0)
 	step = O.dt
 	scene, engines, said = built(tier, bendingStiffness=STIFF)
 	bending = engines["MembraneBending"]
@@ -54,6 +54,20 @@ def test_bendingArrives(O, built, tier):
 	O.step()
 	assert dict(O.energy.items())["elastBending"] > 0
 	assert energy.current()["membrane"] == pytest.approx(dict(O.energy.items())["elastBending"] + dict(O.energy.items())["elastMembrane"], rel=1e-12)
+
+
+def test_selfContactArrives(O, built, tier):
+	built(tier)
+	step = O.dt
+	scene, engines, _ = built(tier, selfContact=True)
+	contact = engines["MembraneSelfContact"]
+	assert scene.lateralBoundary.sheet == [engines["MembraneBonds"], contact]
+	assert O.dt == step  # an open sheet touches nothing
+	radius = contact.membrane.sphereRadius
+	assert contact.normalStiffness == pytest.approx(math.pi * O.materials["membrane"].emod * radius / 2, rel=1e-12)
+	scene.setPressure(1e4)
+	O.step()
+	assert contact.pairs == [] and contact.criticalTimeStep() == math.inf
 
 
 def test_strengthsArrive(built, tier):

@@ -57,7 +57,7 @@ def test_whatTheMembraneCarries(whole):
 	shear = numpy.array([stage == "shear" for stage in table["stage"]])
 	# A stiff membrane round a specimen that has become thinner: it carries some of the pressure, and the rest is what arrives.
 	assert (table["sigma3_membrane"][shear] < -500).all()
-	assert abs(table["sigma3_transmitted_group3"] / inside - 1)[shear].max() < 0.01
+	assert abs(table["sigma3_transmitted_group3"] / inside - 1)[shear].max() < 0.02
 	assert abs(table["membrane_axial_mid"][shear]).min() > 0 and abs(table["membrane_axial_end"][shear]).min() > 0
 
 
@@ -74,8 +74,8 @@ def test_stressAlongTheHeight(whole, O):
 	# At mid-height the soil carries what the balance of forces on half the specimen says, but for contacts of the membrane across the cut.
 	force = (last["platen_force_bottom"] + last["platen_force_top"]) / 2 + last["pressure_axial"] + last["membrane_axial_mid"] - last["membrane_axial_end"]
 	assert found.axial[2:4].mean() == pytest.approx(force * last["height"] / last["volume"], rel=0.1)
-	assert (found.axial * found.volume).sum() / found.volume.sum() == pytest.approx(last["soil_axial"], rel=0.01)
-	assert last["boundary_axial"] == pytest.approx(last["soil_axial"], rel=0.01)
+	assert (found.axial * found.volume).sum() / found.volume.sum() == pytest.approx(last["soil_axial"], rel=0.05)
+	assert last["boundary_axial"] == pytest.approx(last["soil_axial"], rel=0.05)  # 2.5 % of inertia in a test as fast as this one
 	main = numpy.array(handles.lateralBoundary.membrane.groups)[:: handles.lateralBoundary.membrane.perRing] == 3
 	assert found.rowPressure[main].mean() == pytest.approx(last["sigma3_transmitted_group3"], rel=0.02)
 	assert found.radial[1:5].mean() == pytest.approx(last["sigma3_transmitted_group3"], rel=0.15)

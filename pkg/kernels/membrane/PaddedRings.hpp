@@ -27,6 +27,15 @@ public:
 		for (int a = 0; a < 3; ++a) row(a, k)[i] = v[a];
 	}
 	Vec3 get(int k, int i) const { return {row(0, k)[i], row(1, k)[i], row(2, k)[i]}; }
+	/// All of them, row after row.
+	std::vector<Vec3> vectors() const
+	{
+		std::vector<Vec3> all;
+		all.reserve(size_t(n) * rows());
+		for (int k = 0; k < rows(); ++k)
+			for (int i = 0; i < n; ++i) all.push_back(get(k, i));
+		return all;
+	}
 
 	/// Repeats the ends of row k beyond each other.
 	void wrap(int k)

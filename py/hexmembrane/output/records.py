@@ -46,7 +46,7 @@ COLUMNS = (
 		"boundary_axial",
 		"Pa",
 		"the soil's axial stress from its boundary alone, -sum f (x) x/V over all contacts with platens and membrane or wall, friction included; "
-		"it differs from soil_axial by what inertia takes: a check",
+		"it differs from soil_axial by what inertia takes, a check; compression positive",
 	),
 	Column("boundary_radial", "Pa", "the same, mean of the two horizontal normal stresses"),
 	Column(
@@ -102,7 +102,7 @@ COLUMNS = (
 	Column("bonds_broken", "", "broken membrane bonds, 0 with a rigid wall"),
 	Column("elapsed", "s", "wall clock spent on the test so far, set-up of a resumed run not counted"),
 	Column("energy_elastic", "J", "elastic energy of the contacts; this and all energies: nan with output.energy: false", True),
-	Column("energy_membrane", "J", "elastic energy of the membrane's bonds, 0 with a rigid wall", True),
+	Column("energy_membrane", "J", "elastic energy of the membrane: bonds, bending, self-contact; 0 with a rigid wall", True),
 	Column("energy_kinetic", "J", "kinetic energy, half a step before", True),
 	Column("energy_friction", "J", "dissipated by contacts since the stage began: sliding, rolling, broken contact bonds", True),
 	Column("energy_damping", "J", "dissipated by the local damping since the stage began", True),
@@ -126,13 +126,13 @@ COLUMNS = (
 	Column(
 		"membrane_axial_mid",
 		"N",
-		"axial pull of the membrane through the plane at mid-height, from the forces of its bonds; tension positive; 0 with a rigid wall",
+		"axial pull of the membrane through the plane at mid-height, from the forces of its bonds, bending and self-contact; tension positive; 0 with a rigid wall",
 	),
 	Column("membrane_axial_end", "N", "the same just inside the O-rings, mean of both ends"),
 	Column(
 		"sigma3_membrane",
 		"Pa",
-		"part of the membrane's own tension in what its main body transmits: forces of the bonds towards the axis over the same "
+		"part of the membrane's own tension in what its main body transmits: forces of bonds, bending and self-contact towards the axis over the same "
 		"area; inwards positive; 0 with a rigid wall",
 	),
 )

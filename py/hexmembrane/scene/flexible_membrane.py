@@ -97,6 +97,8 @@ def sheetEngines(keys, membrane, bending):
 	]
 	if bending > 0:
 		sheet.append(yade.MembraneBending(membrane=membrane, stiffness=bending))
+	if keys.selfContact:
+		sheet.append(yade.MembraneSelfContact(membrane=membrane))
 	return sheet
 
 
@@ -113,7 +115,7 @@ class FlexibleMembrane(LateralBoundary):
 
 	def __init__(self, engines):
 		self.bonds = singleEngine(engines, "MembraneBonds")
-		others = (optionalEngine(engines, name) for name in ("MembraneBending",))
+		others = (optionalEngine(engines, name) for name in ("MembraneBending", "MembraneSelfContact"))
 		self.sheet = [self.bonds, *(engine for engine in others if engine)]
 		self.pressureEngine = singleEngine(engines, "MembranePressure")
 		self.radialServo = optionalEngine(engines, "MembraneRadialServo")
