@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""SoilMeasure, AxialStressServo and BodyArrays in both tiers: against loops over bodies and contacts, closed forms, and what they refuse."""
+"""SoilMeasure, SoilStressServo and BodyArrays in both tiers: against loops over bodies and contacts, closed forms, and what they refuse."""
 
 import math
 
@@ -10,7 +10,7 @@ from contactScene import sphere, springs
 from platenScene import GRAIN, HEIGHT, RADIUS, driven, stack
 from specimenScene import build
 from tiers import engines, find, forces, run, state, writeContacts
-from yade import AxialStressServo, BodyArrays, O, SoilMeasure, utils
+from yade import SoilStressServo, BodyArrays, O, SoilMeasure, utils
 
 SMALL = dict(grains=60, porosity=0.5, particleRadius=4e-3, spin=0.05, substeps=10, swell=1.02)
 
@@ -130,7 +130,7 @@ def servoed(tier, target=30.0, **options):
 	bottom, top, wall = column(1e5)
 	drive = driven(O, tier, platen=top, mode="stress", stress=1.0, area=math.pi * (5 * RADIUS) ** 2, maxVelocity=0.01)
 	measure = SoilMeasure(wall=wall, bottomPlaten=bottom, topPlaten=top)
-	servo = AxialStressServo(measure=measure, drive=drive, stress=target, **{"timeConstant": 400 * O.dt, **options})
+	servo = SoilStressServo(measure=measure, drive=drive, stress=target, **{"timeConstant": 400 * O.dt, **options})
 	O.engines = engines(tier, [servo, drive], damping=0.2)
 	return drive, servo
 
@@ -141,7 +141,7 @@ def test_servoBringsTheSoilToItsTarget(O, tier):
 	drive.area *= 2
 	run(20000)
 	axial = servo.measure.stress()["middle"][2, 2]
-	assert axial == pytest.approx(30, rel=1e-3) and servo.axialStress == pytest.approx(axial, rel=1e-3)
+	assert axial == pytest.approx(30, rel=1e-3) and servo.measured == pytest.approx(axial, rel=1e-3)
 	assert servo.settled and not servo.saturated and servo.factor == pytest.approx(0.5, rel=0.01)
 	assert drive.stress == servo.factor * 30
 
@@ -166,28 +166,49 @@ def test_servoSavedAndLoadedIsTheSameRun(O, tier, tmp_path):
 	O.reset()
 	O.load(file)
 	run(300)
-	assert (state() == whole).all() and find(AxialStressServo).factor == factor
+	assert (state() == whole).all() and find(SoilStressServo).factor == factor
+
+
+def test_radialServoBringsTheSoilToItsTarget(O, tier):
+	"""By the pressure of the main body and of the rows beside the platens; dead, it leaves them as they are."""
+	made = build(tier, grains=60, porosity=0.5, particleRadius=4e-3, swell=1.0, pressure=1e4, servoTime=2e-4, pressureTime=2e-4, damping=0.4)
+	made["top"].dead = made["bottom"].dead = True
+	servo = SoilStressServo(
+		measure=measureOf(made), pressure=made["pressure"], beside=made["servo"], stress=2e5, timeConstant=1e-3, tolerance=0.02
+	)
+	O.engines = engines(tier, [servo, *made.values()], damping=0.4, substeps=10)
+	run(8000)
+	middle = servo.measure.stress()["middle"]
+	assert 0.5 * (middle[0, 0] + middle[1, 1]) == pytest.approx(2e5, rel=0.03) and servo.measured == pytest.approx(2e5, rel=0.03)
+	assert servo.settled and servo.factor != 1
+	assert made["pressure"].pressure == made["servo"].pressure == servo.factor * 2e5
+	servo.dead, servo.stress = True, 1e5
+	kept = made["pressure"].pressure
+	run(20)
+	assert made["pressure"].pressure == kept
 
 
 def test_servoStopsAtItsTimeLimit(O, tier):
 	drive, servo = servoed(tier, target=1e9, timeLimit=1e-4)
-	with pytest.raises(RuntimeError, match="AxialStressServo.timeLimit = 0.0001: the soil's axial stress is .* at iteration .*; fix: "):
+	with pytest.raises(RuntimeError, match="SoilStressServo.timeLimit = 0.0001: the soil's axial stress is .* at iteration .*; fix: "):
 		run(200)
 
 
 @pytest.mark.parametrize(
 	"change, part",
 	(
-		({"stress": math.nan}, "AxialStressServo.stress = nan"),
-		({"stress": 0.0}, "AxialStressServo.stress = 0"),
-		({"timeConstant": math.nan}, "AxialStressServo.timeConstant = nan"),
-		({"timeConstant": 1e-6}, "AxialStressServo.timeConstant = .*two time steps"),
-		({"timeConstant": math.inf}, "AxialStressServo.timeConstant = inf"),
-		({"maxFactor": 1.0}, "AxialStressServo.maxFactor = 1"),
-		({"tolerance": 0.0}, "AxialStressServo.tolerance = 0"),
-		({"timeLimit": 0.0}, "AxialStressServo.timeLimit = 0"),
-		({"measure": None}, "AxialStressServo.measure = None"),
-		({"drive": None}, "AxialStressServo.drive = None"),
+		({"stress": math.nan}, "SoilStressServo.stress = nan"),
+		({"stress": 0.0}, "SoilStressServo.stress = 0"),
+		({"timeConstant": math.nan}, "SoilStressServo.timeConstant = nan"),
+		({"timeConstant": 1e-6}, "SoilStressServo.timeConstant = .*two time steps"),
+		({"timeConstant": math.inf}, "SoilStressServo.timeConstant = inf"),
+		({"maxFactor": 1.0}, "SoilStressServo.maxFactor = 1"),
+		({"tolerance": 0.0}, "SoilStressServo.tolerance = 0"),
+		({"timeLimit": 0.0}, "SoilStressServo.timeLimit = 0"),
+		({"measure": None}, "SoilStressServo.measure = None"),
+		({"drive": None}, "SoilStressServo.drive = None: what to press with"),
+		({"pressure": yade.MembranePressure()}, "SoilStressServo.drive = given together with pressure"),
+		({"beside": yade.MembraneRadialServo()}, "SoilStressServo.beside = given"),
 	),
 )
 def test_servoRefuses(O, tier, change, part):

@@ -32,8 +32,24 @@ def consolidated(tmp_path, runHere, name="out", **sections):
 def test_endsWithTheSoilOnTarget(tmp_path, runHere, boundary):
 	last, _ = consolidated(tmp_path, runHere, boundary=boundary, consolidation=SLOW)
 	assert last["soil_axial_middle"] == pytest.approx(1e5, rel=0.01)
-	assert last["sigma3_transmitted_group3"] == pytest.approx(1e5, rel=0.01)
+	assert last["soil_radial_middle"] == pytest.approx(1e5, rel=0.01 if boundary == "membrane" else 0.1)
+	assert last["sigma3_transmitted_group3"] == pytest.approx(Scene().lateralBoundary.pressure, rel=0.01)
+	assert last["sigma3_target"] == 1e5
 	assert last["boundary_axial"] == pytest.approx(last["soil_axial"], rel=0.01)
+
+
+@pytest.mark.parametrize("changes, closed", (({}, True), ({"radial": "transmitted"}, False), ({"open": True}, False), ({"open": True, "radial": "soil"}, True)))
+def test_whichRadialStressIsHeld(tmp_path, runHere, changes, closed):
+	"""The soil's, by default where the membrane's loop is closed; in shear the membrane's pressure stays."""
+	changes = dict(changes)
+	membrane = {"pressureTime": float("inf")} if changes.pop("open", False) else {}
+	last, _ = consolidated(tmp_path, runHere, consolidation={"unbalanced": 0.05, "tolerance": 0.3, **changes}, membrane=membrane)
+	servo = Scene().radialServo
+	assert (servo is not None) == closed
+	if closed:
+		assert servo.dead and Scene().lateralBoundary.pressure == servo.factor * 1e5
+	else:
+		assert Scene().lateralBoundary.pressure == 1e5
 
 
 def test_platensForceAsInPfc(tmp_path, runHere):

@@ -149,6 +149,6 @@ def test_targetOutOfReach(tmp_path, runHere, boundary, limit):
 	for arguments, first in (([], "generated"), (["--resume"], "resumed in consolidation")):
 		code, said, errors = runHere(path, "--out", tmp_path / "out", *arguments)
 		assert code == 1 and "YADE stopped before step" in errors and errors.count("fix: ") == 2
-		assert f"AxialStressServo.timeLimit = {limit:g}: the soil's axial stress is " in errors
+		assert f"SoilStressServo.timeLimit = {limit:g}: the soil's axial stress is " in errors
 		assert first in said or first == "generated"
 		assert (tmp_path / "out" / "checkpoint.json").is_file()

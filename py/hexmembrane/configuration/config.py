@@ -221,8 +221,19 @@ class Consolidation:
 		"",
 		choices=("soil", "platen"),
 	)
-	axialTime: Optional[float] = key(
-		None, "time constant of the loop of axial: soil; none: 10 d sqrt(rho/pressure), d the mean grain diameter", "s", low=0, openLow=True
+	radial: Optional[str] = key(
+		None,
+		"likewise the radial stress in the membrane: the soil's own in its middle half ('soil'), or the transmitted pressure ('transmitted'); in shear the "
+		"transmitted pressure is held that consolidation ended with; none: soil where the membrane's loop is closed, transmitted with pressureTime .inf",
+		"",
+		choices=("soil", "transmitted"),
+	)
+	stressTime: Optional[float] = key(
+		None,
+		"time constant of the loops that are closed on the soil; none: 10 d sqrt(rho/pressure) axially and 20 radially, d the mean grain diameter",
+		"s",
+		low=0,
+		openLow=True,
 	)
 	unbalanced: float = key(1e-3, "limit of the unbalanced force ratio, membrane counted", "", low=0, high=0.1, openLow=True, free=True)
 	tolerance: Optional[float] = key(

@@ -86,7 +86,7 @@ def row(scene, grains, reference, stage, elapsed):
 	bottom, top = scene.faces()
 	height = top - bottom
 	volume, radius = measured["volume"], boundary.meanRadius()
-	pressure = boundary.pressure
+	pressure = scene.pressure
 	forces = scene.bottomDrive.force, scene.topDrive.force
 	speed = scene.approachSpeed()
 	inertial = speed / height * grains.meanDiameter * math.sqrt(grains.density / pressure) if pressure > 0 else 0.0

@@ -55,7 +55,7 @@ COLUMNS = (
 		"what a load cell at the platens and a laboratory's area correction show: (F - sigma3_target Ae)/Am, F mean platen force, Ae face of a platen "
 		"(pi r^2 in a rigid wall), Am mean area V/h; the membrane's pull and sag are in it; compression positive",
 	),
-	Column("sigma3_target", "Pa", "sigma3: pressure asked for, that the soil is to receive; pushes inwards"),
+	Column("sigma3_target", "Pa", "sigma3: pressure asked for, that the soil is to have; pushes inwards"),
 	Column(
 		"sigma3_applied",
 		"Pa",

@@ -48,7 +48,7 @@ def _sameState(config):
 	boundary = Scene().lateralBoundary
 	if boundary.name != config.boundary:
 		raise ConfigError("boundary", config.boundary, f"the state has a {boundary.name}", f"give boundary: {boundary.name}")
-	wanted, pressure = config.consolidation.pressure, boundary.pressure
+	wanted, pressure = config.consolidation.pressure, Scene().pressure
 	if abs(pressure - wanted) > 1e-9 * wanted:
 		raise ConfigError("consolidation.pressure", wanted, f"the state was consolidated at {pressure} Pa", "give that pressure")
 

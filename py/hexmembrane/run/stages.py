@@ -206,11 +206,13 @@ class TriaxialTest:
 		"""Relative distances: of transmitted pressure and soil's axial stress from the pressure, of the platen's force from what it is to carry."""
 		target, row, drive = self.config.consolidation.pressure, self.lastRow, self.scene.topDrive
 		errors = {
-			"transmitted pressure": abs(row["sigma3_transmitted_group3"] / target - 1),
+			"transmitted pressure": abs(row["sigma3_transmitted_group3"] / self.scene.lateralBoundary.pressure - 1),
 			"platen's force": abs(row["platen_force_top"] / (drive.stress * self.scene.endArea()) - 1),
 		}
 		if self.scene.axialServo:
 			errors["soil's axial stress"] = abs(row["soil_axial_middle"] / target - 1)
+		if self.scene.radialServo:
+			errors["soil's radial stress"] = abs(row["soil_radial_middle"] / target - 1)
 		return errors
 
 	def _tolerance(self):
@@ -247,6 +249,7 @@ class TriaxialTest:
 	def beginShear(self):
 		"""Strains count from here and the platens are set to their velocities."""
 		self._enter("shear")
+		self.scene.holdRadialLoad()
 		self.scene.setFriction(self.config.specimen.friction, self.config.platens.friction)
 		self.scene.setTimeLimit(None)
 		keys = self.config.shear

@@ -104,8 +104,8 @@ def build(config, packing, say=print):
 		yade.PlatenDrive(platen=bottom, direction=(0, 0, 1), mode="velocity", velocity=0.0),
 		yade.PlatenDrive(platen=top, direction=(0, 0, -1), mode="stress", stress=0.0, area=math.pi * packing.radius**2),
 	]
-	axial = _axialServo(config, packing, parts, bottom, top, drives[1])
-	O.engines = _engines(config, [*before, *axial, *drives, *after], min(smallest, parts.smallestRadius))
+	servos = _stressServos(config, packing, parts, bottom, top, drives[1], before)
+	O.engines = _engines(config, [*servos, *before, *drives, *after], min(smallest, parts.smallestRadius))
 	O.trackEnergy = config.output.energy
 	scene = Scene()
 	_setTimeStep(config, timestep.grainStep(config.specimen, smallest), parts, say)
@@ -119,14 +119,23 @@ def build(config, packing, say=print):
 	return scene
 
 
-def _axialServo(config, packing, parts, bottom, top, drive):
-	"""The engine that closes the top platen's stress on the soil's, in a list; none when the platen's force itself is asked for."""
+def _stressServos(config, packing, parts, bottom, top, drive, lateral):
+	"""The engines that close the top platen's stress, and the membrane's pressure, on the soil's own stress; those that are asked for.
+
+	:param lateral: engines of the lateral boundary.
+	"""
 	keys = config.consolidation
-	if keys.axial == "platen":
-		return []
-	time = keys.axialTime or 10 * timestep.inertialTime(packing.radii, config.specimen.density, keys.pressure)
+	inertial = timestep.inertialTime(packing.radii, config.specimen.density, keys.pressure)
 	measure = yade.SoilMeasure(bottomPlaten=bottom, topPlaten=top, **parts.around)
-	return [yade.AxialStressServo(measure=measure, drive=drive, stress=0.0, timeConstant=time)]
+	servos = []
+	if keys.axial == "soil":
+		servos.append(yade.SoilStressServo(measure=measure, drive=drive, stress=0.0, timeConstant=keys.stressTime or 10 * inertial))
+	closed = config.membrane.pressureTime != math.inf
+	if config.boundary == "membrane" and (keys.radial or ("soil" if closed else "transmitted")) == "soil":
+		byName = {type(engine).__name__: engine for engine in lateral}
+		loads = {"pressure": byName["MembranePressure"], "beside": byName.get("MembraneRadialServo")}
+		servos.append(yade.SoilStressServo(measure=measure, stress=0.0, timeConstant=keys.stressTime or 20 * inertial, **loads))
+	return servos
 
 
 def _setTimeStep(config, grains, parts, say):

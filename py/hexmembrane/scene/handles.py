@@ -16,7 +16,7 @@ class Scene:
 	"""Handles to the parts of the scene in ``O``; make a new one after ``O.load``.
 
 	Attributes: ``lateralBoundary`` (a :class:`hexmembrane.scene.lateral_boundary.LateralBoundary`), ``guard`` (RunawayGuard),
-	``bottomDrive`` and ``topDrive`` (the PlatenDrive of each end platen), ``axialServo`` (AxialStressServo, None where the platen's force is held),
+	``bottomDrive`` and ``topDrive`` (the PlatenDrive of each end platen), ``axialServo`` and ``radialServo`` (SoilStressServo, None where the platen's force or the transmitted pressure is held),
 	``measure`` (a SoilMeasure), ``loop`` (the compact tier's engine, None in the reference tier).
 
 	:raises RuntimeError: the scene in ``O`` is not one of :func:`hexmembrane.scene.builder.build`.
@@ -33,7 +33,9 @@ class Scene:
 		if len(drives) != 2:
 			raise RuntimeError(f"Scene.engines = {len(drives)} PlatenDrive: 2 expected; fix: load a state saved by this test")
 		self.bottomDrive, self.topDrive = sorted(drives, key=lambda drive: -drive.direction[2])
-		self.axialServo = next(iter(byType.get("AxialStressServo", ())), None)
+		servos = byType.get("SoilStressServo", ())
+		self.axialServo = next((servo for servo in servos if servo.drive), None)
+		self.radialServo = next((servo for servo in servos if servo.pressure), None)
 		self.measure = yade.SoilMeasure(bottomPlaten=self.bottomDrive.platen, topPlaten=self.topDrive.platen, **self.lateralBoundary.around)
 		self._half = [O.bodies[drive.platen].shape.height / 2 for drive in (self.bottomDrive, self.topDrive)]
 
@@ -83,13 +85,24 @@ class Scene:
 
 	def setPressure(self, pressure):
 		"""Give the lateral boundary and the top platen the confining pressure [Pa]."""
-		self.lateralBoundary.setPressure(pressure)
-		if self.axialServo:
-			self.axialServo.stress = pressure
+		for servo in (self.axialServo, self.radialServo):
+			if servo:
+				servo.stress = pressure
+		self.lateralBoundary.setPressure(pressure * (self.radialServo.factor if self.radialServo else 1))
 		self.topDrive.stress = pressure * (self.axialServo.factor if self.axialServo else 1)
 		# A new target would start the platen's time limit anew: a wall that moves by less than 0.05 % of its radius makes none.
 		if abs(self.topDrive.area / self.endArea() - 1) > 1e-3:
 			self.topDrive.area = self.endArea()
+
+	@property
+	def pressure(self):
+		"""Confining pressure asked for [Pa]."""
+		return self.radialServo.stress if self.radialServo else self.lateralBoundary.pressure
+
+	def holdRadialLoad(self):
+		"""Leave the membrane's pressure at what has brought the soil's radial stress to its target: from here on the transmitted pressure is held."""
+		if self.radialServo:
+			self.radialServo.dead = True
 
 	def setTimeLimit(self, limit):
 		"""Time [s] that each servo has to reach its target once, none without."""
