@@ -4,8 +4,11 @@
 #include "kernels/base/Check.hpp"
 #include "kernels/base/Simd.hpp"
 
+#include <omp.h>
+
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace hexmembrane {
 
@@ -31,11 +34,18 @@ inline double meanOfSix(const double* own, const double* below, const double* ab
 	return ((own[i - 1] + own[i + 1]) + (below[i] + below[i + 1]) + (above[i] + above[i + 1])) / 6;
 }
 
-HEXMEMBRANE_WIDEST void bendRow(int n, const double* __restrict own, const double* __restrict below, const double* __restrict above,
-                                const double* __restrict rest, double* __restrict out)
+/// \return the sum of squares of `out`
+HEXMEMBRANE_WIDEST double bendRow(int n, const double* __restrict own, const double* __restrict below, const double* __restrict above,
+                                  const double* __restrict rest, double* __restrict out)
 {
-#pragma omp simd
-	for (int i = 0; i < n; ++i) out[i] = (own[i] - meanOfSix(own, below, above, i)) - rest[i];
+	double sum = 0;
+#pragma omp simd reduction(+ : sum)
+	for (int i = 0; i < n; ++i) {
+		const double b = (own[i] - meanOfSix(own, below, above, i)) - rest[i];
+		out[i] = b;
+		sum += b * b;
+	}
+	return sum;
 }
 
 HEXMEMBRANE_WIDEST void forceRow(int n, double spring, const double* __restrict own, const double* __restrict below, const double* __restrict above,
@@ -48,7 +58,7 @@ HEXMEMBRANE_WIDEST void forceRow(int n, double spring, const double* __restrict 
 } // namespace
 
 BendingForce::BendingForce(const HexStencil& s, double spring, const PaddedRings& unbent)
-    : force(s.perRing, s.rings), stencil(s), kb(spring), rest(unbent), bent(s.perRing, s.rings + 2)
+    : force(s.perRing, s.rings), stencil(s), kb(spring), rest(unbent), squares(s.rings, 0.)
 {
 	requireNonNegative("spring", spring, "N/m");
 	if (s.rings < 3) reject("rings", s.rings, "no ring has neighbours on both sides", "3 rings at least");
@@ -70,38 +80,48 @@ PaddedRings BendingForce::restOfTube(int perRing, double radius)
 	return rest;
 }
 
-void BendingForce::act(const PaddedRings& x, const PaddedRings& from, PaddedRings& bend, PaddedRings& onParticle) const
+void BendingForce::act(const PaddedRings& x, const PaddedRings& from, PaddedRings& onParticle, std::vector<double>& squared) const
 {
-	const int n = stencil.perRing;
-#pragma omp parallel for schedule(static)
-	for (int k = 1; k < stencil.rings - 1; ++k) {
-		const int left = HexStencil::left(k);
-		for (int a = 0; a < 3; ++a) bendRow(n, x.row(a, k), x.row(a, k - 1) + left, x.row(a, k + 1) + left, from.row(a, k % 2), bend.row(a, k + 1));
-		bend.wrap(k + 1);
-	}
-#pragma omp parallel for schedule(static)
-	for (int k = 0; k < stencil.rings; ++k) {
-		const int left = HexStencil::left(k);
-		for (int a = 0; a < 3; ++a) forceRow(n, kb, bend.row(a, k + 1), bend.row(a, k) + left, bend.row(a, k + 2) + left, onParticle.row(a, k));
+	const int n = stencil.perRing, rings = stencil.rings;
+#pragma omp parallel
+	{
+		const int thread = omp_get_thread_num(), threads = omp_get_num_threads();
+		const int first = rings * thread / threads, end = rings * (thread + 1) / threads;
+		// B x - b0 of three rings at a time, ring k in row k % 3: they stay in the nearest cache. What two threads need of a ring they both compute
+		PaddedRings bent(n, 3);
+		const PaddedRings none(n, 1);
+		const auto inside = [&](int k) { return k > 0 && k < rings - 1; };
+		const auto row = [&](int a, int k) { return inside(k) ? bent.row(a, k % 3) : none.row(a, 0); };
+		const auto bend = [&](int k) {
+			if (!inside(k)) return;
+			const int left = HexStencil::left(k);
+			double sum = 0;
+			for (int a = 0; a < 3; ++a)
+				sum += bendRow(n, x.row(a, k), x.row(a, k - 1) + left, x.row(a, k + 1) + left, from.row(a, k % 2), bent.row(a, k % 3));
+			bent.wrap(k % 3);
+			if (first <= k && k < end) squared[k] = sum;
+		};
+		bend(first - 1);
+		bend(first);
+		for (int k = first; k < end; ++k) {
+			bend(k + 1);
+			const int left = HexStencil::left(k);
+			for (int a = 0; a < 3; ++a) forceRow(n, kb, row(a, k), row(a, k - 1) + left, row(a, k + 1) + left, onParticle.row(a, k));
+		}
 	}
 }
 
-void BendingForce::compute(const PaddedRings& position) { act(position, rest, bent, force); }
+void BendingForce::compute(const PaddedRings& position) { act(position, rest, force, squares); }
 
 void BendingForce::addAnswer(const PaddedRings& displacement, PaddedRings& sum) const
 {
-	PaddedRings bend(stencil.perRing, stencil.rings + 2), own(stencil.perRing, stencil.rings);
-	act(displacement, flat(stencil.perRing), bend, own);
+	PaddedRings own(stencil.perRing, stencil.rings);
+	std::vector<double> unused(stencil.rings);
+	act(displacement, flat(stencil.perRing), own, unused);
 	for (int k = 0; k < stencil.rings; ++k)
 		for (int i = 0; i < stencil.perRing; ++i) sum.set(k, i, sum.get(k, i) + own.get(k, i));
 }
 
-double BendingForce::energy() const
-{
-	double sum = 0;
-	for (int k = 1; k < stencil.rings - 1; ++k)
-		for (int i = 0; i < stencil.perRing; ++i) sum += bent.get(k + 1, i).squaredNorm();
-	return 0.5 * kb * sum;
-}
+double BendingForce::energy() const { return 0.5 * kb * std::accumulate(squares.begin(), squares.end(), 0.); }
 
 } // namespace hexmembrane

@@ -44,12 +44,13 @@ public:
 	PaddedRings force; ///< after compute()
 
 private:
-	void act(const PaddedRings& x, const PaddedRings& from, PaddedRings& bend, PaddedRings& onParticle) const;
+	/// Forces of departures from `from`, and the sum of their squares of each ring.
+	void act(const PaddedRings& x, const PaddedRings& from, PaddedRings& onParticle, std::vector<double>& squared) const;
 
 	HexStencil stencil;
 	double kb = 0;
 	PaddedRings rest;
-	PaddedRings bent; ///< B x - b0 of ring k in row k + 1; zero in the end rings and beyond them
+	std::vector<double> squares; ///< of B x - b0, by ring (m2); 0 of the end rings
 };
 
 } // namespace hexmembrane
