@@ -32,7 +32,7 @@ def consolidated(tmp_path, runHere, name="out", **sections):
 def test_endsWithTheSoilOnTarget(tmp_path, runHere, boundary):
 	last, _ = consolidated(tmp_path, runHere, boundary=boundary, consolidation=SLOW)
 	assert last["soil_axial_middle"] == pytest.approx(1e5, rel=0.01)
-	assert last["soil_radial_middle"] == pytest.approx(1e5, rel=0.01 if boundary == "membrane" else 0.1)
+	assert last["soil_radial_middle"] == pytest.approx(1e5, rel=0.01 if boundary == "membrane" else 0.2)  # a wall has one radius
 	assert last["sigma3_transmitted_group3"] == pytest.approx(Scene().lateralBoundary.pressure, rel=0.01)
 	assert last["sigma3_target"] == 1e5
 	assert last["boundary_axial"] == pytest.approx(last["soil_axial"], rel=0.01)
