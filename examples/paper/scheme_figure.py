@@ -33,8 +33,10 @@ EXAMPLES = pathlib.Path(hexmembrane.__file__).resolve().parents[2] / "examples"
 SCHEMES = {"three-stage": "three-stage", "main": "pressure on the main body only", "held": "ends held"}
 SETTINGS = {
 	"specimen": {"grains": 1000},
-	# Open loops: what a scheme does, not what a closed loop makes of it.
-	"membrane": {"servoTime": math.inf, "pressureTime": math.inf},
+	# Open loops, a sheet without bending stiffness, the platen's force and rough platens: what a scheme does by itself.
+	"membrane": {"servoTime": math.inf, "pressureTime": math.inf, "bendingStiffness": 0.0},
+	"consolidation": {"axial": "platen"},
+	"platens": {"consolidationFriction": None},
 	"shear": {"strain": 0.06},
 	"output": {"records": 24, "vtkEvery": 0, "checkpointEvery": 0},
 }
