@@ -25,11 +25,19 @@ from hexmembrane.scene.handles import Scene
 from yade import O
 
 CONFIGURATION = pathlib.Path(hexmembrane.__file__).resolve().parents[2] / "examples" / "paper" / "flexible-100.yaml"
-OURS = {}
-STUDY = {
-	"membrane": {"surface": "centre", "areaRule": "cube", "servoTime": math.inf, "pressureTime": math.inf, "platenRows": 2},
-	"consolidation": {"tolerance": 0.3},
+#: A sheet without bending stiffness between rough platens, both loops closed on the transmitted pressure: the study's membrane.
+OURS = {
+	"membrane": {"bendingStiffness": 0.0},
+	"consolidation": {"axial": "platen", "radial": "transmitted"},
+	"platens": {"consolidationFriction": None},
 }
+STUDY = configuration.merged(
+	OURS,
+	{
+		"membrane": {"surface": "centre", "areaRule": "cube", "servoTime": math.inf, "pressureTime": math.inf, "platenRows": 2},
+		"consolidation": {"tolerance": 0.3},
+	},
+)
 SIZES = (1.25e-3, 1.0e-3, 0.75e-3, 0.5e-3, 0.25e-3)
 PRESSURES = (5e4, 1e5, 1.5e5)
 SHORT = {
