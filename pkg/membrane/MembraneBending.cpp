@@ -29,19 +29,44 @@ void MembraneBending::prepare()
 	named("MembraneBending", {{"rings", "membrane"}}, [&] { kernel.reset(new hexmembrane::BendingForce(membrane->stencil(), wanted, rest)); });
 	built = wanted;
 	builtFor = membrane.get();
+	torn = -1;
+}
+
+// A particle that has lost a bond bends nothing any more. What it stored is set free as that of the bond is.
+void MembraneBending::tear(StepView& view)
+{
+	const int broken = bonds ? bonds->brokenCount() : 0;
+	if (broken == torn) return;
+	const bool known = torn >= 0; // else a saved state goes on: what its breaks set free has been entered
+	torn = broken;
+	if (broken == 0) return;
+	const auto pairs = hexmembrane::bondList(membrane->stencil());
+	vector<char> at(membrane->ids.size(), 0);
+	for (size_t b = 0; b < bonds->broken.size(); ++b)
+		if (bonds->broken[b]) at[pairs[b][0]] = at[pairs[b][1]] = 1;
+	kernel->compute(view.positions(*membrane));
+	const Real before = kernel->energy();
+	kernel->setTorn(at);
+	kernel->compute(view.positions(*membrane));
+	if (known) freed += before - kernel->energy();
 }
 
 void MembraneBending::action() { stepOverBodies(*this); }
 
 void MembraneBending::step(StepView& view)
 {
+	tear(view);
 	kernel->compute(view.positions(*membrane));
 	view.addForces(*membrane, {{0, membrane->rings - 1}}, kernel->force, nullptr, nullptr);
 }
 
 void MembraneBending::bookStored()
 {
-	if (scene->trackEnergy) scene->energy->add(kernel->energy(), "elastBending", energyIndex, /*reset*/ true);
+	if (scene->trackEnergy) {
+		scene->energy->add(kernel->energy(), "elastBending", energyIndex, /*reset*/ true);
+		if (freed != 0) scene->energy->add(freed, "bondDissip", freedIndex);
+	}
+	freed = 0;
 }
 
 void MembraneBending::addAnswer(const hexmembrane::PaddedRings& displacement, hexmembrane::PaddedRings& sum) const { kernel->addAnswer(displacement, sum); }

@@ -1,7 +1,7 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "HexMembrane.hpp"
+#include "MembraneBonds.hpp"
 
 #include "compact/Stepped.hpp"
 
@@ -38,7 +38,10 @@ private:
 	std::unique_ptr<hexmembrane::BendingForce> kernel;
 	Real built = NaN;
 	const HexMembrane* builtFor = nullptr;
-	int energyIndex = -1;
+	int energyIndex = -1, freedIndex = -1;
+	void tear(StepView& view);
+	int torn = -1;  //!< broken bonds that the kernel knows of; -1: it is new
+	Real freed = 0; //!< by bonds that broke in this step (J)
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneBending,GlobalEngine,
@@ -53,6 +56,7 @@ private:
 		"Example::\n\n\tMembraneBending(membrane=m,stiffness=5e-5)",
 		((shared_ptr<HexMembrane>,membrane,,,"The membrane. Required."))
 		((Real,stiffness,NaN,,"Bending stiffness $D$ of the plate [N m], at least 0; of a sheet of thickness $t$: $Et^3/(12(1-\\nu^2))$. Required."))
+		((shared_ptr<MembraneBonds>,bonds,,,"The membrane's bonds, when they may break: a particle that has lost a bond bends nothing any more. None: the sheet does not tear."))
 		,/*ctor*/,
 		.add_property("springStiffness",&MembraneBending::springStiffness,"$k_b=8\\sqrt3D/(2R)^2$ [N/m].")
 		.def("elasticEnergy",&MembraneBending::elasticEnergy,"Elastic energy of the bending [J] at the last step.")

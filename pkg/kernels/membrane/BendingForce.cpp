@@ -6,6 +6,7 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -48,6 +49,18 @@ HEXMEMBRANE_WIDEST double bendRow(int n, const double* __restrict own, const dou
 	return sum;
 }
 
+/// \return the sum of squares of `row` without its torn particles
+HEXMEMBRANE_WIDEST double tearRow(int n, const double* __restrict whole, double* __restrict row)
+{
+	double sum = 0;
+#pragma omp simd reduction(+ : sum)
+	for (int i = 0; i < n; ++i) {
+		row[i] *= whole[i];
+		sum += row[i] * row[i];
+	}
+	return sum;
+}
+
 HEXMEMBRANE_WIDEST void forceRow(int n, double spring, const double* __restrict own, const double* __restrict below, const double* __restrict above,
                                  double* __restrict out)
 {
@@ -58,7 +71,7 @@ HEXMEMBRANE_WIDEST void forceRow(int n, double spring, const double* __restrict 
 } // namespace
 
 BendingForce::BendingForce(const HexStencil& s, double spring, const PaddedRings& unbent)
-    : force(s.perRing, s.rings), stencil(s), kb(spring), rest(unbent), squares(s.rings, 0.)
+    : force(s.perRing, s.rings), stencil(s), kb(spring), rest(unbent), whole(s.rings), squares(s.rings, 0.)
 {
 	requireNonNegative("spring", spring, "N/m");
 	if (s.rings < 3) reject("rings", s.rings, "no ring has neighbours on both sides", "3 rings at least");
@@ -80,6 +93,17 @@ PaddedRings BendingForce::restOfTube(int perRing, double radius)
 	return rest;
 }
 
+void BendingForce::setTorn(const std::vector<char>& torn)
+{
+	const int n = stencil.perRing;
+	if (int(torn.size()) != stencil.particles()) reject("torn", int(torn.size()), "does not fit the tube", "one for each particle");
+	for (int k = 0; k < stencil.rings; ++k) {
+		whole[k].clear();
+		if (std::count(torn.begin() + k * n, torn.begin() + (k + 1) * n, 0) == n) continue;
+		for (int i = 0; i < n; ++i) whole[k].push_back(torn[k * n + i] ? 0 : 1);
+	}
+}
+
 void BendingForce::act(const PaddedRings& x, const PaddedRings& from, PaddedRings& onParticle, std::vector<double>& squared) const
 {
 	const int n = stencil.perRing, rings = stencil.rings;
@@ -98,6 +122,10 @@ void BendingForce::act(const PaddedRings& x, const PaddedRings& from, PaddedRing
 			double sum = 0;
 			for (int a = 0; a < 3; ++a)
 				sum += bendRow(n, x.row(a, k), x.row(a, k - 1) + left, x.row(a, k + 1) + left, from.row(a, k % 2), bent.row(a, k % 3));
+			if (!whole[k].empty()) {
+				sum = 0;
+				for (int a = 0; a < 3; ++a) sum += tearRow(n, whole[k].data(), bent.row(a, k % 3));
+			}
 			bent.wrap(k % 3);
 			if (first <= k && k < end) squared[k] = sum;
 		};

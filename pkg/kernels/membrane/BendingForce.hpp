@@ -34,6 +34,9 @@ public:
 	/// That of a flat sheet.
 	static PaddedRings flat(int perRing) { return {perRing, 2}; }
 
+	/// Particles (by their index) about which the sheet is torn: they bend nothing any more.
+	void setTorn(const std::vector<char>& torn);
+
 	/// Forces (N) on all rings at these positions, whose rows are wrapped.
 	void compute(const PaddedRings& position);
 	/// Adds the forces that displacements from anywhere call up; they are linear in them. Rows are wrapped.
@@ -50,7 +53,8 @@ private:
 	HexStencil stencil;
 	double kb = 0;
 	PaddedRings rest;
-	std::vector<double> squares; ///< of B x - b0, by ring (m2); 0 of the end rings
+	std::vector<std::vector<double>> whole; ///< by ring: 1 for a particle that is not torn, 0 for one that is; empty: none is
+	std::vector<double> squares;            ///< of B x - b0, by ring (m2); 0 of the end rings
 };
 
 } // namespace hexmembrane

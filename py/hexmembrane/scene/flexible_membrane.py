@@ -96,7 +96,7 @@ def sheetEngines(keys, membrane, bending):
 		)
 	]
 	if bending > 0:
-		sheet.append(yade.MembraneBending(membrane=membrane, stiffness=bending))
+		sheet.append(yade.MembraneBending(membrane=membrane, stiffness=bending, bonds=sheet[0]))
 	if keys.selfContact:
 		sheet.append(yade.MembraneSelfContact(membrane=membrane))
 	return sheet
