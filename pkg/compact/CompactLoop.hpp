@@ -117,7 +117,7 @@ private:
 		.def("contactCount",&CompactLoop::contactCount,"Number of touching contacts, boundaries and membrane included.")
 		.def("contract",&CompactLoop::contract,"What is done with each attribute that a script may change between iterations: a list of (of, attribute, 'read' | 'watched' | 'refused', what). Read: acts from the next iteration on. Watched: a change makes the tier collect the scene anew. Refused: an error with body id and fix, before anything is changed.").staticmethod("contract")
 		.def("canStep",&CompactLoop::canStep,(boost::python::arg("engine")),"Whether an engine can be stepped inside, by its class.").staticmethod("canStep")
-		.def("criticalTimeStep",&CompactLoop::criticalTimeStep,"Critical time step [s] of central differences, $2/\\omega$, with the highest frequency $\\omega$ of the contacts and membrane bonds as they are now (all sticking), by power iteration to about 1 %.")
+		.def("criticalTimeStep",&CompactLoop::criticalTimeStep,"Critical time step [s] of central differences, $2/\\omega$, with the highest frequency $\\omega$ of the contacts and the sheet (bonds, bending, self-contact) as they are now (all sticking), by power iteration to about 1 %.")
 	);
 	// clang-format on
 	DECLARE_LOGGER;

@@ -59,7 +59,7 @@ private:
 		"With $k_s=0$ ($\\nu=1/3$) rotations are neither needed nor computed.\n\n"
 		"Strengths are PFC's linear contact bond: a bond whose tension exceeds tensileStrength loses both forces; one whose shear exceeds shearStrength keeps what friction holds in compression; a broken bond carries compression only. "
 		"With :yref:`O.trackEnergy<Omega.trackEnergy>` the elastic energy is entered as 'elastMembrane'.\n\n"
-		"The membrane has no bending stiffness and no thickness change. Forces are the same to the last bit for any number of threads; the sums over contacts that they are added to are not.\n\n"
+		"Bending stiffness: :yref:`MembraneBending`. There is no thickness change. Forces are the same to the last bit for any number of threads; the sums over contacts that they are added to are not.\n\n"
 		"Errors: ``ValueError`` for parameters, ``RuntimeError`` for a membrane not generated, a body erased, a force that is not finite (with body id and iteration).\n\n"
 		"Example::\n\n\tMembraneBonds(membrane=m,young=1.4e6,thickness=.3e-3,poisson=1/3.)",
 		((shared_ptr<HexMembrane>,membrane,,,"The membrane. Required."))

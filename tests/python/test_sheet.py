@@ -73,3 +73,10 @@ def test_selfContactArrives(O, built, tier):
 def test_strengthsArrive(built, tier):
 	_, engines, _ = built(tier, tensileStrength=2.0, shearStrength=3.0, poisson=0.2)
 	assert (engines["MembraneBonds"].tensileStrength, engines["MembraneBonds"].shearStrength) == (2.0, 3.0)
+
+
+def test_aTornMembraneIsToldAsThat(tmp_path, runHere):
+	"""Bonds that are far too weak: whatever stops the test, its first words are of the membrane."""
+	path = configure(tmp_path, membrane={"tensileStrength": 1e-3}, consolidation={"unbalanced": 1e-3})
+	code, _, errors = runHere(path, "--out", tmp_path / "out")
+	assert code == 1 and "the membrane is torn, " in errors and "bonds are broken (membrane.tensileStrength" in errors, errors

@@ -87,9 +87,14 @@ class TriaxialTest:
 			why = str(error)
 		if why or O.iter != wanted:
 			raise StageError(
-				f"{self.stage}.step = {O.iter}: YADE stopped before step {wanted}: {why or 'see its messages above'}; "
+				f"{self.stage}.step = {O.iter}: YADE stopped before step {wanted}: {self._torn()}{why or 'see its messages above'}; "
 				f"fix: go on from the last checkpoint in '{self.out}', with a smaller numerics.safety, a slower test or what else is said here"
 			)
+
+	def _torn(self):
+		"""What an error says first when the membrane is torn, else nothing."""
+		broken = self.scene.lateralBoundary.brokenBonds()
+		return f"the membrane is torn, {broken} of its bonds are broken (membrane.tensileStrength, shearStrength); " if broken else ""
 
 	def row(self):
 		"""Measure, write and return a row of the records."""
@@ -97,7 +102,7 @@ class TriaxialTest:
 		lost = rows.escaped(self.scene, self.grains)
 		if lost is not None:
 			raise StageError(
-				f"{self.stage}.step = {O.iter}: grain {lost} at {tuple(O.bodies[lost].state.pos)} has left the {self.scene.lateralBoundary.name}; "
+				f"{self.stage}.step = {O.iter}: grain {lost} at {tuple(O.bodies[lost].state.pos)} has left the {self.scene.lateralBoundary.name}; {self._torn()}"
 				"fix: a smaller membrane.particleRadius, a smaller numerics.safety or a slower test"
 			)
 		self.records.append(self.lastRow)
