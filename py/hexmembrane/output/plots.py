@@ -9,7 +9,7 @@ _MISSING = "no shear rows in {}: nothing to plot; fix: shear the specimen first"
 
 
 def plot(recordsPath, pngPath, title=""):
-	"""Draw q, both volumetric strains and the transmitted pressures against axial strain.
+	"""Draw the soil's q, both volumetric strains, and transmitted pressures beside the soil's radial stress, against axial strain.
 
 	:param recordsPath: records.csv of a test.
 	:param pngPath: picture to write (by temporary name and rename).
@@ -35,7 +35,7 @@ def plot(recordsPath, pngPath, title=""):
 		figure.suptitle(title)
 
 	upper.plot(strain, column("q", 1e-3), color="#1f4e79", lw=1.8)
-	upper.set_ylabel("deviatoric stress q [kPa]")
+	upper.set_ylabel("deviatoric stress of the soil q [kPa]")
 
 	middle.plot(strain, column("volumetric_strain_radius", 100), color="#b5541c", lw=1.8, label="from the mean radius (Eq. 6)")
 	middle.plot(strain, column("volumetric_strain_volume", 100), color="#1f4e79", lw=1.4, ls="--", label="from the enclosed volume")
@@ -46,11 +46,12 @@ def plot(recordsPath, pngPath, title=""):
 	target = column("sigma3_target", 1e-3)
 	lower.plot(strain, column("sigma3_transmitted_group3", 1e-3), color="#1f4e79", lw=1.4, label="transmitted, group 3")
 	lower.plot(strain, column("sigma3_transmitted_all", 1e-3), color="#b5541c", lw=1.2, ls="--", label="transmitted, all")
+	lower.plot(strain, column("soil_radial", 1e-3), color="#7a5195", lw=1.2, label="radial stress of the soil")
 	lower.plot(strain, column("sigma3_applied", 1e-3), color="#3a7d44", lw=1.0, label="applied")
 	lower.plot(strain, target, color="0.25", lw=1.0, label="target")
 	low, high = [0.95 * p for p in target], [1.05 * p for p in target]
 	lower.fill_between(strain, low, high, color="0.94", zorder=0, label="target \N{PLUS-MINUS SIGN} 5 %")
-	lower.margins(y=0.3)
+	lower.margins(y=0.45)
 	lower.set_ylabel("confining pressure [kPa]")
 	lower.set_xlabel("axial strain [%]")
 	lower.legend(frameon=False, fontsize="small", ncols=3, loc="upper center", columnspacing=1.2)
