@@ -80,3 +80,14 @@ def test_aTornMembraneIsToldAsThat(tmp_path, runHere):
 	path = configure(tmp_path, membrane={"tensileStrength": 1e-3}, consolidation={"unbalanced": 1e-3})
 	code, _, errors = runHere(path, "--out", tmp_path / "out")
 	assert code == 1 and "the membrane is torn, " in errors and "bonds are broken (membrane.tensileStrength" in errors, errors
+
+
+def test_aWeakSheetIsToldBeforeTheRun(built):
+	"""Only one that both stretches and bends too easily; never the default."""
+	weak = dict(young=1e5, thickness=3e-4)
+	assert "WARNING: pressure times grain radius is " not in built("compact")[2]
+	assert "WARNING: pressure" not in built("compact", **weak)[2]
+	assert "WARNING: pressure" not in built("compact", bendingStiffness=0.0, young=1e7, thickness=5e-3)[2]
+	said = built("compact", bendingStiffness=0.0, **weak)[2]
+	assert "of E t (limit 0.25), and it has no bending stiffness" in said and "fix: leave membrane.bendingStiffness out" in said
+	assert "lets it sag by " in built("compact", bendingStiffness=1e-5, **weak)[2]

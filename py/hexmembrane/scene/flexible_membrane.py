@@ -16,6 +16,8 @@ from hexmembrane.scene import geometry, timestep
 from hexmembrane.scene.lateral_boundary import BoundaryParts, LateralBoundary, Surface, optionalEngine, singleEngine
 from hexmembrane.scene.membrane_loads import endHeights, membraneLoads
 
+#: What a sheet holds, by measurement: pressure times grain radius over E t, whatever D is; sag that D allows over the grain radius, whatever E t is.
+MOST_STRETCHED, MOST_SAG = 0.25, 0.05
 #: Bit of the membrane's spheres in a body's mask.
 MASK = 2
 
@@ -159,7 +161,7 @@ class FlexibleMembrane(LateralBoundary):
 			log=[
 				cls._description(keys, membrane, smallest, bending),
 				*cls._scaled(config, packing, membrane, scaling, unscaled),
-				*cls._warning(config, packing),
+				*cls._warning(config, packing, bending),
 			],
 		)
 
@@ -184,14 +186,17 @@ class FlexibleMembrane(LateralBoundary):
 		]
 
 	@staticmethod
-	def _warning(config, packing):
-		meanRadius = float((packing.radii**3).mean()) ** (1 / 3)
-		sag = config.consolidation.pressure * meanRadius / (config.membrane.young * config.membrane.thickness)
-		if sag <= 0.5:
+	def _warning(config, packing, bending):
+		"""The rule of a sheet that is too weak for its grains, from what became of tests to 20 % strain (README of pkg/membrane, Weak sheets)."""
+		radius, pressure = float((packing.radii**3).mean()) ** (1 / 3), config.consolidation.pressure
+		stretched = pressure * radius / (config.membrane.young * config.membrane.thickness)
+		sag = pressure * radius**3 / (64 * bending) if bending > 0 else math.inf
+		if stretched <= MOST_STRETCHED or sag <= MOST_SAG:
 			return []
+		bent = f"its bending stiffness lets it sag by {sag:.2g} of a grain" if bending > 0 else "it has no bending stiffness"
 		return [
-			f"WARNING: pressure times grain radius is {sag:.2g} of E t: the membrane will sag deep between the grains and may fold; "
-			"fix: raise membrane.young or membrane.thickness"
+			f"WARNING: pressure times grain radius is {stretched:.2g} of E t (limit {MOST_STRETCHED:g}), and {bent} (limit {MOST_SAG:g}): the membrane may "
+			"fold between the grains and turn inside out; fix: leave membrane.bendingStiffness out, or raise membrane.young or thickness"
 		]
 
 	@property
