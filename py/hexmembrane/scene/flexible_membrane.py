@@ -255,15 +255,20 @@ class FlexibleMembrane(LateralBoundary):
 		return membraneLoads(self.membrane, self._heights(), self.sheet, self.pressureEngine, bottom, top)
 
 	def outside(self, points):
-		"""Which points are outside.
+		"""Which points between its ends are outside.
 
 		A point on the inner side of the membrane particle nearest to it, by the surface's normal there, is inside; the few others, where
 		the membrane is folded, are looked at by :func:`hexmembrane.scene.geometry.insideTube`.
 		"""
 		x, triangles = yade.BodyArrays.positions(self.membrane.ids), self._triangles
-		nearest = cKDTree(x).query(points)[1]
-		lost = ((points - x[nearest]) * geometry.normals(x, triangles)[nearest]).sum(axis=1) >= 0
-		for k in numpy.flatnonzero(lost):
+		axis = x[:, :2].mean(axis=0)
+		# no particle is as near to the axis as this, and no triangle between particles
+		core = 0.9 * numpy.hypot(*(x[:, :2] - axis).T).min()
+		near = numpy.flatnonzero(numpy.hypot(*(points[:, :2] - axis).T) >= core)
+		nearest = cKDTree(x).query(points[near])[1]
+		beyond = ((points[near] - x[nearest]) * geometry.normals(x, triangles)[nearest]).sum(axis=1) >= 0
+		lost = numpy.zeros(len(points), dtype=bool)
+		for k in near[beyond]:
 			lost[k] = not geometry.insideTube(points[k], x, triangles, self.membrane.perRing)
 		return lost
 
