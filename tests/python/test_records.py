@@ -116,7 +116,7 @@ def test_picture(tmp_path):
 	write(tmp_path / "r.csv", 13)
 	figure = plot(tmp_path / "r.csv", tmp_path / "p.png", "a test")
 	assert [axes.get_ylabel() for axes in figure.axes] == [
-		"deviatoric stress q [kPa]",
+		"deviatoric stress of the soil q [kPa]",
 		"volumetric strain [%]\n(dilation positive)",
 		"confining pressure [kPa]",
 	]
