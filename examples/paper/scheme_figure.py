@@ -43,7 +43,7 @@ SETTINGS = {
 SHORT = {
 	"specimen": {"grains": 150, "porosity": 0.46},
 	"membrane": {"particleRadius": 2.5e-3, "thickness": 2e-3},
-	"consolidation": {"unbalanced": 0.1, "tolerance": 0.3, "rampTime": 0.004},
+	"consolidation": {"unbalanced": 0.08, "tolerance": 0.3, "rampTime": 0.004},
 	"shear": {"strain": 0.002, "velocity": 0.2},
 	"output": {"records": 2},
 }

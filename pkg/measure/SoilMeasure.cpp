@@ -30,12 +30,24 @@ const Body& bodyOf(const Scene& scene, Body::id_t id, const string& what, const 
 Real halfOf(const Body& platen) { return 0.5 * static_cast<const Platen&>(*platen.shape).height; }
 
 // A tensor row by row, as numpy has it.
+void append(vector<Real>& rows, const Matrix3r& m)
+{
+	for (int i = 0; i < 3; ++i)
+		for (int j = 0; j < 3; ++j) rows.push_back(m(i, j));
+}
+
 boost::python::object tensor(const Matrix3r& m)
 {
 	vector<Real> rows;
-	for (int i = 0; i < 3; ++i)
-		for (int j = 0; j < 3; ++j) rows.push_back(m(i, j));
+	append(rows, m);
 	return numpyArray(rows, "f8", 3);
+}
+
+// The branch joins the centres of grains; to what is no grain it ends at the contact.
+void addBranch(hexmembrane::SlabStress& slabs, const TouchingContact& c, bool first, bool second)
+{
+	const Vector3r start = first ? c.centre1 : c.point;
+	slabs.add(start, (second ? c.centre2 : c.point) - start, c.force);
 }
 
 } // namespace
@@ -61,11 +73,13 @@ std::array<Real, 2> SoilMeasure::faces(const Scene& scene) const
 	return {bottom.state->pos[2] + halfOf(bottom), top.state->pos[2] - halfOf(top)};
 }
 
-Real SoilMeasure::volume(const Scene& scene, const vector<Vector3r>& sheet, Real low, Real high) const
+vector<Real> SoilMeasure::volumes(const Scene& scene, const vector<Vector3r>& sheet, const vector<Real>& heights) const
 {
-	if (membrane) return membrane->volumeWithin(sheet, low, high);
+	if (membrane) return membrane->volumesBetween(sheet, heights);
 	const Real radius = static_cast<const CylinderWall&>(*(*scene.bodies)[wall]->shape).radius;
-	return M_PI * radius * radius * (high - low);
+	vector<Real> found;
+	for (size_t k = 1; k < heights.size(); ++k) found.push_back(M_PI * radius * radius * (heights[k] - heights[k - 1]));
+	return found;
 }
 
 vector<char> SoilMeasure::grainsOf(const Scene& scene) const
@@ -82,7 +96,8 @@ SoilMeasure::Stress SoilMeasure::measure(const Scene& scene, const EachContact& 
 {
 	const auto [low, high] = faces(scene);
 	const Real quarter = 0.25 * (high - low);
-	hexmembrane::SlabStress slabs({low, low + quarter, high - quarter, high});
+	const vector<Real> heights{low, low + quarter, high - quarter, high};
+	hexmembrane::SlabStress slabs(heights);
 	const vector<char> grain = grainsOf(scene);
 	Stress found;
 	int count = 0;
@@ -91,8 +106,7 @@ SoilMeasure::Stress SoilMeasure::measure(const Scene& scene, const EachContact& 
 		found.contactForce += c.force.norm();
 		const bool first = grain[c.id1], second = grain[c.id2];
 		if (!first && !second) return;
-		const Vector3r start = first ? c.centre1 : c.point, end = second ? c.centre2 : c.point;
-		slabs.add(start, end - start, c.force);
+		addBranch(slabs, c, first, second);
 		if (first && second)
 			found.grainContacts += c.normalForce > 0;
 		else
@@ -100,8 +114,9 @@ SoilMeasure::Stress SoilMeasure::measure(const Scene& scene, const EachContact& 
 	});
 	if (count > 0) found.contactForce /= count;
 	found.grains = static_cast<int>(std::count(grain.begin(), grain.end(), 1));
-	found.volume = volume(scene, sheet, low, high);
-	found.middleVolume = volume(scene, sheet, low + quarter, high - quarter);
+	const vector<Real> parts = volumes(scene, sheet, heights);
+	found.volume = parts[0] + parts[1] + parts[2];
+	found.middleVolume = parts[1];
 	found.whole = slabs.total() / found.volume;
 	found.middle = slabs.sums()[1] / found.middleVolume;
 	found.boundary /= found.volume;
@@ -144,17 +159,12 @@ boost::python::tuple SoilMeasure::profile(int count) const
 	forEachContactOf(scene, "SoilMeasure", [&](const TouchingContact& c) {
 		const bool first = grain[c.id1], second = grain[c.id2];
 		if (!first && !second) return;
-		const Vector3r start = first ? c.centre1 : c.point;
-		slabs.add(start, (second ? c.centre2 : c.point) - start, c.force);
+		addBranch(slabs, c, first, second);
 	});
-	const vector<Vector3r> sheet = sheetNow();
-	vector<Real> volumes, stresses;
-	for (int s = 0; s < count; ++s) {
-		volumes.push_back(volume(scene, sheet, edges[s], edges[s + 1]));
-		for (int i = 0; i < 3; ++i)
-			for (int j = 0; j < 3; ++j) stresses.push_back(slabs.sums()[s](i, j) / volumes.back());
-	}
-	return boost::python::make_tuple(numpyArray(edges, "f8"), numpyArray(volumes, "f8"), numpyArray(stresses, "f8", 9).attr("reshape")(-1, 3, 3));
+	const vector<Real> parts = volumes(scene, sheetNow(), edges);
+	vector<Real> stresses;
+	for (int s = 0; s < count; ++s) append(stresses, slabs.sums()[s] / parts[s]);
+	return boost::python::make_tuple(numpyArray(edges, "f8"), numpyArray(parts, "f8"), numpyArray(stresses, "f8", 9).attr("reshape")(-1, 3, 3));
 }
 
 boost::python::object SoilMeasure::coordinationNumbers(const vector<Body::id_t>& ids) const

@@ -35,7 +35,8 @@ public:
 private:
 	//! Heights of the platens' faces (m).
 	std::array<Real, 2> faces(const Scene& scene) const;
-	Real volume(const Scene& scene, const vector<Vector3r>& sheet, Real low, Real high) const;
+	//! Between rising heights, one less than heights (m3).
+	vector<Real> volumes(const Scene& scene, const vector<Vector3r>& sheet, const vector<Real>& heights) const;
 	vector<Vector3r> sheetNow() const;
 	//! By body id: whether it is a grain, a sphere that is not of the membrane.
 	vector<char> grainsOf(const Scene& scene) const;

@@ -206,7 +206,14 @@ Real HexMembrane::enclosedVolume(Real zBottom, Real zTop, const string& surface)
 	return slab(surface, positions_get(), zBottom, zTop, "enclosedVolume: zBottom").volume;
 }
 
-Real HexMembrane::volumeWithin(const vector<Vector3r>& x, Real zBottom, Real zTop) const { return slab("inner", x, zBottom, zTop, "zBottom").volume; }
+vector<Real> HexMembrane::volumesBetween(const vector<Vector3r>& x, const vector<Real>& heights) const
+{
+	const vector<Vector3r> inner = surfacePoints("inner", x);
+	const auto triangles = triangleList();
+	vector<Real> volumes;
+	for (size_t k = 1; k < heights.size(); ++k) volumes.push_back(hexmembrane::measureTube(triangles, inner, heights[k - 1], heights[k]).volume);
+	return volumes;
+}
 
 Real HexMembrane::meanRadius(Real zBottom, Real zTop, const string& surface) const
 {

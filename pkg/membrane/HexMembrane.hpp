@@ -44,8 +44,8 @@ public:
 	vector<Vector3r> contactForces(const Scene& scene, const string& who) const;
 	//! The pressure that a group transmits in this instant (Pa).
 	Real transmitted(StepView& view, int group, const string& who) const;
-	//! Volume (m3) inside the inner surface between two heights, with the particles at x.
-	Real volumeWithin(const vector<Vector3r>& x, Real zBottom, Real zTop) const;
+	//! Volumes (m3) inside the inner surface between rising heights, one less than heights, with the particles at x.
+	vector<Real> volumesBetween(const vector<Vector3r>& x, const vector<Real>& heights) const;
 	//! The particles' places in this instant.
 	vector<Vector3r> positionsIn(StepView& view) const;
 	//! Mean pressure (Pa) that forces on the particles (N, positive inwards) are over the inner area of a group (0: all of groups 2 and 3).
