@@ -142,4 +142,14 @@ vector<Vector3r> MembranePressure::forces() const
 	return applied;
 }
 
+Real MembranePressure::axialPush(Real z) const
+{
+	requireStepped("axialPush");
+	hexmembrane::requireFinite("MembranePressure.axialPush: z", z, "m");
+	const auto& bodies = *Omega::instance().getScene()->bodies;
+	Real push = 0;
+	for (int v : loaded) push += (bodies[vertexIds[v]]->state->pos.z() < z ? 0.5 : -0.5) * forceOn(v).z();
+	return push;
+}
+
 } // namespace yade

@@ -21,6 +21,7 @@ public:
 	Real area() const;
 	Vector3r resultant() const;
 	vector<Vector3r> forces() const;
+	Real axialPush(Real z) const;
 
 	void prepare() override;
 	void step(StepView& view) override;
@@ -83,6 +84,7 @@ private:
 		.add_property("applied",&MembranePressure::applied,"Pressure on the triangles [Pa]: factor times pressure.")
 		.add_property("area",&MembranePressure::area,"Loaded area at the last step [m²]: a third of every triangle round each loaded particle.")
 		.add_property("resultant",&MembranePressure::resultant,"Sum of the applied forces at the last step [N].")
+		.def("axialPush",&MembranePressure::axialPush,(boost::python::arg("z")),"Axial parts of the applied forces towards the plane at the height z [m], mean of both sides [N], at the last step: half the difference of the sums below and above.")
 		.def("forces",&MembranePressure::forces,"Applied force [N] on each vertex at the last step, in the order of ids (zero where none is applied).")
 	);
 	// clang-format on

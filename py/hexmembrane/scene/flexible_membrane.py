@@ -261,13 +261,12 @@ class FlexibleMembrane(LateralBoundary):
 		the membrane is folded, are looked at by :func:`hexmembrane.scene.geometry.insideTube`.
 		"""
 		x, triangles = yade.BodyArrays.positions(self.membrane.ids), self._triangles
-		axis = x[:, :2].mean(axis=0)
-		# no particle is as near to the axis as this, and no triangle between particles
-		core = 0.9 * numpy.hypot(*(x[:, :2] - axis).T).min()
-		near = numpy.flatnonzero(numpy.hypot(*(points[:, :2] - axis).T) >= core)
+		lost = numpy.zeros(len(points), dtype=bool)
+		near = numpy.flatnonzero(~geometry.insideCore(points, x, triangles, self.membrane.perRing))
+		if not len(near):
+			return lost
 		nearest = cKDTree(x).query(points[near])[1]
 		beyond = ((points[near] - x[nearest]) * geometry.normals(x, triangles)[nearest]).sum(axis=1) >= 0
-		lost = numpy.zeros(len(points), dtype=bool)
 		for k in near[beyond]:
 			lost[k] = not geometry.insideTube(points[k], x, triangles, self.membrane.perRing)
 		return lost

@@ -16,6 +16,28 @@ def normals(points, triangles):
 	return numpy.divide(total, length, out=numpy.zeros_like(total), where=length > 0)
 
 
+def insideCore(points, x, triangles, perRing):
+	"""Which points are so near to the axis of a tube of rings that no triangle is between: surely inside. Between its ends only.
+
+	A horizontal line from the axis meets the triangles of a band of two rings at heights that the band reaches. Points of a triangle of longest edge L
+	and nearest corner rho from the axis are at least sqrt(rho^2 - L^2/2) from it.
+
+	:param points: (N, 3).
+	:param x: (rings * perRing, 3) points from the lower ring to the upper one.
+	:param triangles: (M, 3).
+	"""
+	axis = x[:, :2].mean(axis=0)
+	away = ((x[:, :2] - axis) ** 2).sum(axis=1).reshape(-1, perRing).min(axis=1)
+	z = x[:, 2].reshape(-1, perRing)
+	low, high = (part(edge[:-1], edge[1:]) for part, edge in ((numpy.minimum, z.min(axis=1)), (numpy.maximum, z.max(axis=1))))
+	corners = [x[triangles[:, k]] for k in range(3)]
+	longest = max(float(((corners[k] - corners[k - 1]) ** 2).sum(axis=1).max()) for k in range(3))
+	free = numpy.minimum(away[:-1], away[1:]) - longest / 2
+	height = points[:, 2, None]
+	reach = numpy.where((low <= height) & (height <= high), free, numpy.inf).min(axis=1)
+	return ((points[:, :2] - axis) ** 2).sum(axis=1) < numpy.where(numpy.isfinite(reach), reach, -1)
+
+
 def insideTube(point, x, triangles, perRing):
 	"""Whether a point is inside a tube of rings, its ends closed by fans, however much the tube is folded.
 

@@ -9,8 +9,6 @@ the O-rings differ. The soil's own stress is measured from its contacts (SoilMea
 
 import dataclasses
 
-import numpy
-
 
 @dataclasses.dataclass
 class MembraneLoads:
@@ -38,16 +36,6 @@ def endHeights(membrane, z):
 	return 0.5 * float(rows[k - 1] + rows[k]), 0.5 * float(rows[-k] + rows[-k - 1])
 
 
-def axialPush(z, force, middle):
-	"""P [N]: axial parts of applied forces towards mid-height, mean of both halves.
-
-	:param z: heights of the loaded points [m].
-	:param force: axial parts of the forces on them [N].
-	:param middle: mid-height [m].
-	"""
-	return 0.5 * float(force[z < middle].sum() - force[z >= middle].sum())
-
-
 def membraneLoads(membrane, z, sheet, pressureEngine, bottom, top):
 	"""The :class:`MembraneLoads` of the last step.
 
@@ -59,13 +47,12 @@ def membraneLoads(membrane, z, sheet, pressureEngine, bottom, top):
 	:param top: height of the top platen's face [m].
 	"""
 	middle = 0.5 * (bottom + top)
-	applied = numpy.array([force[2] for force in pressureEngine.forces()])
 
 	def pull(height):
 		return sum(engine.axialTension(height) for engine in sheet)
 
 	return MembraneLoads(
-		axialPush=axialPush(z, applied, middle),
+		axialPush=pressureEngine.axialPush(middle),
 		axialPullMiddle=pull(middle),
 		axialPullEnd=sum(pull(height) for height in endHeights(membrane, z)) / 2,
 		radialPressure=sum(engine.radialShare(3) for engine in sheet),
