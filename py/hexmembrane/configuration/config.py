@@ -8,7 +8,7 @@ import dataclasses
 import pathlib
 from typing import Optional
 
-from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, section
+from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, paths, section, toDict
 
 #: Keys of the specimen that are files.
 PATHS = ("packing", "gradation")
@@ -292,9 +292,21 @@ class Output:
 
 @dataclasses.dataclass
 class Config:
-	"""A whole test."""
+	"""A whole test.
+
+	Attribute: ``given``, the paths of the keys that it was made from, such as 'shear.velocity'; the others have their defaults.
+	"""
 
 	title: str = key("triaxial test", "a name for the plot and the log", free=True)
+	accuracy: Optional[float] = key(
+		None,
+		"error of the peak of q that the settings of one run may cost, as a share: the cheapest that do are chosen for shear.velocity, specimen.emod, "
+		"numerics.safety and membrane.sizeRatio where these keys are left out; none: their defaults",
+		"",
+		low=0,
+		high=1,
+		openLow=True,
+	)
 	tier: str = key(
 		"compact",
 		"how steps are taken: by one engine over flat arrays ('compact', an order of magnitude faster) or by YADE's own loop ('reference')",
@@ -323,6 +335,7 @@ class Config:
 		if isinstance(values, dict):
 			values = {name: value for name, value in values.items() if name != "made"}
 		config = build(cls, values)
+		config.given = frozenset(paths(values if isinstance(values, dict) else toDict(config)))
 		if config.membrane.placement == "centred" and config.membrane.particleRadius is None:
 			raise ConfigError("membrane.placement", "centred", "the soil's radius then follows from the particle's radius", "give membrane.particleRadius")
 		for name in PATHS:
