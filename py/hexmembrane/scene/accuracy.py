@@ -2,15 +2,17 @@
 """What the settings of a test cost in accuracy: its error budget, and the cheapest settings within an error. Uses nothing of YADE.
 
 Each knob's curve was measured on packings that differ in nothing else (``scripts/bench accuracy``; the page with figures:
-examples/accuracy/README.md): the mean difference to a converged reference, and the half width of its 95 % interval. With b_k the sum of
-both for the knob k, the settings' systematic error is at most sum b_k. One run differs from the mean of many by its *scatter* too: grains
-that start the least bit otherwise take other paths. The budget of a run is sum b_k + 2 scatter. The scatter was measured at 1,200 grains
-and goes with 1/sqrt(N).
+examples/accuracy/README.md): the mean difference m_k to a converged reference, and the half width h_k of its 95 % interval. Two runs differ
+by their *scatter* s too: grains that start the least bit otherwise take other paths. The budget of a run, the largest difference to a run
+with all knobs at their references that is to be expected in 95 of 100, is
+
+	sum |m_k| + sqrt(sum h_k^2 + (2 s)^2)
+
+Errors of one sign are not set off against those of the other. The scatter was measured at 1,200 grains and goes with 1/sqrt(N).
 """
 
 import csv
 import dataclasses
-import itertools
 import math
 import pathlib
 from typing import Callable
@@ -20,8 +22,8 @@ import numpy
 from hexmembrane.configuration import ConfigError
 from hexmembrane.scene import timestep
 
-#: What errors are told of: columns' names in the curves, and in words.
-QUANTITIES = {"peak q": "peak of q, relative", "volumetric strain": "volumetric strain at 15 %, absolute"}
+#: What errors are told of, as the curves have it: relative, and absolute.
+PEAK, VOLUME = QUANTITIES = "peak q", "volumetric strain at 15 %"
 #: Grains of the packings on which the curves were measured.
 GRAINS = 1200
 _FILE = pathlib.Path(__file__).with_name("accuracy.csv")
@@ -69,9 +71,9 @@ KNOBS = (
 		lambda c, r: timestep.stiffnessLevel(c.specimen.emod, c.consolidation.pressure),
 		lambda x, c, r: 4 * c.consolidation.pressure * x / math.pi,
 	),
-	Knob("time step", "numerics.safety", lambda c, r: c.numerics.safety, lambda x, c, r: x),
+	Knob("step", "numerics.safety", lambda c, r: c.numerics.safety, lambda x, c, r: x),
 	Knob("damping", "numerics.damping", lambda c, r: c.numerics.damping, chosen=False),
-	Knob("membrane size", "membrane.sizeRatio", _sizeRatio, lambda x, c, r: x),
+	Knob("size ratio", "membrane.sizeRatio", _sizeRatio, lambda x, c, r: x),
 )
 
 
@@ -84,10 +86,9 @@ class Curve:
 	halfWidth: dict
 	time: numpy.ndarray
 
-	def bound(self, quantity, x):
-		"""Largest systematic error at levels x: |mean| and half width, linear in log x between what was measured, its end beyond the reference."""
-		bound = numpy.abs(self.mean[quantity]) + self.halfWidth[quantity]
-		return numpy.interp(numpy.log(x), numpy.log(self.x), bound)
+	def error(self, quantity, x):
+		"""Size of the mean error at levels x and the half width of its interval, linear in log x between what was measured."""
+		return tuple(numpy.interp(numpy.log(x), numpy.log(self.x), part) for part in (numpy.abs(self.mean[quantity]), self.halfWidth[quantity]))
 
 	def cost(self, x):
 		"""Time of a test, relative to the base's."""
@@ -107,17 +108,20 @@ class Measured:
 
 	@classmethod
 	def of(cls, path=_FILE):
-		"""The measurements in a file of ``scripts/bench accuracy``."""
+		"""The measurements in ``curves.csv`` of ``scripts/bench accuracy``. Runs that differ in the lists' skin alone differ by rounding: they tell the scatter."""
 		with open(path, encoding="utf-8") as file:
 			rows = [row for row in csv.DictReader(file) if row["quantity"] in QUANTITIES]
-		scatter, packings = ({row["quantity"]: float(row["scatter"]) for row in rows if row["knob"] == name} for name in ("run to run", "packings"))
+
+		def column(name, knob, quantity):
+			return numpy.array([float(row[name]) for row in rows if (row["knob"], row["quantity"]) == (knob, quantity)])
+
+		scatter, packings = ({name: float(column("scatter", knob, name).max()) for name in QUANTITIES} for knob in ("skin", "packings"))
 		curves = {}
 		for knob in {row["knob"] for row in rows} & {knob.name for knob in KNOBS}:
-			parts = {name: sorted((row for row in rows if (row["knob"], row["quantity"]) == (knob, name)), key=lambda row: float(row["x"])) for name in QUANTITIES}
-			any_ = parts["peak q"]
-			columns = {column: {name: numpy.array([float(row[column]) for row in part]) for name, part in parts.items()} for column in ("mean", "half_width")}
-			x, time = (numpy.array([float(row[column]) for row in any_]) for column in ("x", "time"))
-			curves[knob] = Curve(x, columns["mean"], columns["half_width"], time)
+			x = column("x", knob, PEAK)
+			rising = x.argsort()
+			mean, half = ({name: column(what, knob, name)[rising] for name in QUANTITIES} for what in ("mean", "half_width"))
+			curves[knob] = Curve(x[rising], mean, half, column("time", knob, PEAK)[rising])
 		return cls(curves, scatter, packings)
 
 
@@ -125,7 +129,7 @@ class Measured:
 class Budget:
 	"""The error budget of a test.
 
-	:param parts: (key, value, level, bounds by quantity) of each knob; bounds are None where the level is outside what was measured.
+	:param parts: (key, value, level, (|m|, h) by quantity) of each knob; None instead where the level is outside what was measured.
 	:param scatter: of one run, by quantity.
 	:param packings: of packings that differ in their seed alone, by quantity.
 	"""
@@ -134,13 +138,10 @@ class Budget:
 	scatter: dict
 	packings: dict
 
-	def systematic(self, quantity):
-		"""Sum of the bounds of all knobs that were measured there."""
-		return sum(bounds[quantity] for *_, bounds in self.parts if bounds)
-
 	def total(self, quantity):
-		"""Largest error of one run that is to be expected: systematic and two scatters."""
-		return self.systematic(quantity) + 2 * self.scatter[quantity]
+		"""The budget of a run, of the knobs that were measured there."""
+		errors = [errors[quantity] for *_, errors in self.parts if errors]
+		return sum(mean for mean, _ in errors) + math.hypot(2 * self.scatter[quantity], *(half for _, half in errors))
 
 	def unmeasured(self):
 		"""Keys whose level is outside what was measured."""
@@ -148,20 +149,27 @@ class Budget:
 
 	def lines(self):
 		"""The budget in words, a line each."""
-		said = ["error budget        peak of q   volumetric strain"]
-		for key, value, x, bounds in self.parts:
-			costs = f"{100 * bounds['peak q']:6.2f} %      {100 * bounds['volumetric strain']:.3f} %" if bounds else "  outside what was measured"
-			said.append(f"  {key:<18}{costs}   ({value:.4g}, level {x:.3g})")
-		for name, part in (("scatter of a run", self.scatter), ("scatter, packings", self.packings)):
-			said.append(f"  {name:<18}{100 * part['peak q']:6.2f} %      {100 * part['volumetric strain']:.3f} %")
-		said.append(f"  {'budget of a run':<18}{100 * self.total('peak q'):6.2f} %      {100 * self.total('volumetric strain'):.3f} %")
+		said = [f"error budget          {'peak of q':<18}{VOLUME}"]
+
+		def line(name, peak, volume, more=""):
+			said.append(f"  {name:<20}{peak:<18}{volume:<18}{more}".rstrip())
+
+		for key, value, x, errors in self.parts:
+			costs = [f"{100 * mean:.2f} +- {100 * half:.2f} %" for mean, half in (errors[name] for name in QUANTITIES)] if errors else ["not measured there", ""]
+			line(key, *costs, f"{value:.4g}, level {x:.3g}")
+		for name, part in (("scatter of runs", self.scatter), ("scatter of packings", self.packings), ("budget of a run", {name: self.total(name) for name in QUANTITIES})):
+			line(name, *(f"{100 * part[name]:.2f} %" for name in QUANTITIES))
 		return said
 
 	def asDict(self):
-		"""For the resolved configuration."""
-		parts = {key: {"level": float(f"{x:.4g}"), **({name: float(f"{cost:.3g}") for name, cost in bounds.items()} if bounds else {"measured": False})} for key, _, x, bounds in self.parts}
-		sums = {"scatter of a run": self.scatter, "scatter of packings": self.packings, "budget of a run": {name: self.total(name) for name in QUANTITIES}}
-		return {**parts, **{title: {name: float(f"{cost:.3g}") for name, cost in part.items()} for title, part in sums.items()}}
+		"""For the resolved configuration: sizes of mean errors and half widths by key, then the sums; plain numbers."""
+		parts = {key: {name: [_short(part) for part in errors[name]] for name in QUANTITIES} if errors else "not measured there" for key, _, _, errors in self.parts}
+		sums = {"scatter of runs": self.scatter, "scatter of packings": self.packings, "budget of a run": {name: self.total(name) for name in QUANTITIES}}
+		return {**parts, **{title: {name: _short(part[name]) for name in QUANTITIES} for title, part in sums.items()}}
+
+
+def _short(number):
+	return float(f"{number:.3g}")
 
 
 def _scattered(scatter, count):
@@ -179,8 +187,8 @@ def budget(config, radii, measured=None):
 	for knob in KNOBS:
 		if knob.applies(config) and knob.name in measured.curves:
 			curve, x = measured.curves[knob.name], knob.level(config, radii)
-			bounds = {name: float(curve.bound(name, x)) for name in QUANTITIES} if curve.covers(x) else None
-			parts.append((knob.key, _get(config, knob.key), x, bounds))
+			errors = {name: tuple(float(part) for part in curve.error(name, x)) for name in QUANTITIES} if curve.covers(x) else None
+			parts.append((knob.key, _get(config, knob.key), x, errors))
 	return Budget(parts, _scattered(measured.scatter, len(radii)), _scattered(measured.packings, len(radii)))
 
 
@@ -205,42 +213,38 @@ def choose(config, radii, measured=None):
 	"""
 	measured = measured or Measured.of()
 	knobs = [knob for knob in KNOBS if knob.applies(config) and knob.name in measured.curves]
-	free = [knob for knob in knobs if knob.key in openKeys(config)]
-	kept = sum(_bound(knob, measured, config, radii) for knob in knobs if knob not in free)
-	left = config.accuracy - kept - 2 * _scattered(measured.scatter, len(radii))["peak q"]
-	levels = [_levels(measured.curves[knob.name].x) for knob in free]
-	bounds, costs = (
-		[getattr(measured.curves[knob.name], what)(*arguments, x) for knob, x in zip(free, levels)]
-		for what, arguments in (("bound", ("peak q",)), ("cost", ()))
-	)
-	least = sum(float(bound.min()) for bound in bounds)
-	if least > left:
+	levels = [_levels(measured.curves[knob.name].x) if knob.key in openKeys(config) else _level(knob, measured, config, radii) for knob in knobs]
+	grid = numpy.meshgrid(*levels, indexing="ij")
+	errors = [measured.curves[knob.name].error(PEAK, x) for knob, x in zip(knobs, grid)]
+	scatter = 2 * _scattered(measured.scatter, len(radii))[PEAK]
+	totals = sum(mean for mean, _ in errors) + numpy.sqrt(scatter**2 + sum(half**2 for _, half in errors))
+	costs = math.prod(measured.curves[knob.name].cost(x) for knob, x in zip(knobs, grid))
+	if totals.min() > config.accuracy:
 		raise ConfigError(
 			"accuracy",
 			config.accuracy,
-			f"is out of reach: {100 * kept:.2g} % are lost by keys that are given, {100 * least:.2g} % at least by the others, and two scatters of a run are "
-			f"{200 * _scattered(measured.scatter, len(radii))['peak q']:.2g} %",
-			f"accuracy: {math.ceil(1000 * (config.accuracy - left + least)) / 1000:g} or more, or more grains, or leave keys out",
+			f"is out of reach: {100 * totals.min():.2g} % is the least with the keys that are given, {100 * scatter:.2g} % of it two scatters of a run",
+			f"accuracy: {math.ceil(1000 * totals.min()) / 1000:g} or more, or more grains, or leave keys out",
 		)
-	best = min(
-		(pick for pick in itertools.product(*(range(len(x)) for x in levels)) if sum(bound[i] for bound, i in zip(bounds, pick)) <= left),
-		key=lambda pick: math.prod(cost[i] for cost, i in zip(costs, pick)),
-	)
-	chosen = {knob.key: float(f"{knob.value(x[i], config, radii):.4g}") for knob, x, i in zip(free, levels, best)}
+	best = numpy.unravel_index(numpy.where(totals <= config.accuracy, costs, numpy.inf).argmin(), costs.shape)
+	chosen = {
+		knob.key: float(f"{knob.value(x[best], config, radii):.4g}") for knob, x in zip(knobs, grid) if knob.key in openKeys(config)
+	}
 	for key, value in chosen.items():
 		section, name = key.split(".")
 		setattr(getattr(config, section), name, value)
 	return chosen
 
 
-def _bound(knob, measured, config, radii):
+def _level(knob, measured, config, radii):
+	"""The one level of a knob that is given."""
 	curve, x = measured.curves[knob.name], knob.level(config, radii)
 	if not curve.covers(x):
 		raise ConfigError(
 			knob.key, _get(config, knob.key), f"is at level {x:.3g}, and errors were measured from {curve.x[0]:.3g} to {curve.x[-1]:.3g} only",
 			"leave the key out, or leave accuracy out",
 		)  # fmt: skip
-	return float(curve.bound("peak q", x))
+	return numpy.array([x])
 
 
 def _levels(x):
