@@ -88,7 +88,6 @@ def test_specimenAnswersAsBefore(runs):
 		porosity[name] = table["porosity"][shear][0]
 		q[name] = table["q"][shear] - table["q"][shear][0]
 		assert table["inertial_number"][shear][-1] == pytest.approx(runs["plain"][0]["inertial_number"][-1], rel=1e-2)
-	print(porosity, abs(q["plain"] - q["scaled"]).max() / q["plain"].max())
-	assert porosity["scaled"] == pytest.approx(porosity["plain"], abs=2e-3)
+	assert porosity["scaled"] == pytest.approx(porosity["plain"], abs=1e-3)
 	# two runs of 200 grains with different time steps: their contacts come and go at different times
 	assert abs(q["plain"] - q["scaled"]).max() < 0.1 * q["plain"].max()
