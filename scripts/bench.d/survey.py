@@ -19,6 +19,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 QUICK = ROOT / "examples" / "quick.yaml"
 
 
+#: Exit codes of a process that was told to end (by an interrupt, a termination or a kill): that is no result.
+ENDED = (130, 143, -2, -9, -15)
+
+
 def configuration(*changes):
 	"""The configuration of examples/quick.yaml with changes, as nested dictionaries; later ones win."""
 	made = yaml.safe_load(QUICK.read_text())
@@ -45,6 +49,8 @@ def run(name, keys, folder):
 		arguments = [str(file), "--out", str(out), *(["--resume"] if (out / "checkpoint.json").is_file() else [])]
 		with open(out / "said.txt", "a") as said:
 			ended = subprocess.run([*program, *arguments], stdout=said, stderr=subprocess.PIPE, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
+		if ended.returncode in ENDED:
+			return ended.returncode, "was ended from outside; call the survey again", out
 		errors = [line for line in ended.stderr.splitlines() if line.startswith("error: ")]
 		log.write_text(f"{ended.returncode} {errors[-1] if errors else ''}\n")
 	code, _, message = log.read_text().strip().partition(" ")
