@@ -7,16 +7,17 @@ The base test is examples/quick.yaml to 15 % strain. A level that is quick.yaml'
 import dataclasses
 import math
 
+from hexmembrane.configuration import load
 from hexmembrane.scene.timestep import inertialTime, stiffnessLevel
-from survey import configuration
+from survey import QUICK
 
 #: Of every run. The time step is looked at where there are checkpoints, so there are some.
 COMMON = {"shear": {"strain": 0.15}, "output": {"records": 60, "vtkEvery": 0, "checkpointEvery": 20, "energy": False}}
 #: Share of the base run's steps that its consolidation takes: 8,500 of 38,000.
 CONSOLIDATION = 0.22
 BASE = "base"
-_QUICK = configuration()
-_SOIL, _PRESSURE = _QUICK["specimen"], _QUICK["consolidation"]["pressure"]
+_QUICK = load(QUICK)
+_SOIL, _PRESSURE = _QUICK.specimen, _QUICK.consolidation.pressure
 
 
 @dataclasses.dataclass
@@ -65,12 +66,12 @@ class Knob:
 
 def meanDiameter(grains):
 	"""Mean diameter [m] by volume of so many grains in the base test's specimen, of which 1 - porosity they fill."""
-	solid = (1 - _SOIL["porosity"]) * math.pi * _SOIL["radius"] ** 2 * _SOIL["height"]
+	solid = (1 - _SOIL.porosity) * math.pi * _SOIL.radius ** 2 * _SOIL.height
 	return (6 * solid / (math.pi * grains)) ** (1 / 3)
 
 
 #: d sqrt(rho/p) of the base test [s].
-TIME = inertialTime(meanDiameter(_SOIL["grains"]) / 2, _SOIL["density"], _PRESSURE)
+TIME = inertialTime(meanDiameter(_SOIL.grains) / 2, _SOIL.density, _PRESSURE)
 
 
 def shearing(factor):
@@ -79,20 +80,21 @@ def shearing(factor):
 
 
 def _velocities():
-	base = _QUICK["shear"]["velocity"]
+	base = _QUICK.shear.velocity
 	for v in (0.0075, 0.015, 0.03, 0.06, 0.12, 0.24, 0.48, 0.96):
-		yield Level(f"{v:g}", v / _SOIL["height"] * TIME, {} if v == base else {"shear": {"velocity": v}}, shearing(base / v))
+		yield Level(f"{v:g}", v / _SOIL.height * TIME, {} if v == base else {"shear": {"velocity": v}}, shearing(base / v))
 
 
 def _moduli():
 	for kappa in (3000, 1000, 300, 100, None):
-		emod = 4 * _PRESSURE * kappa / math.pi if kappa else _SOIL["emod"]
+		emod = 4 * _PRESSURE * kappa / math.pi if kappa else _SOIL.emod
 		level = stiffnessLevel(emod, _PRESSURE)
-		yield Level(f"{level:.0f}", level, {"specimen": {"emod": emod}} if kappa else {}, math.sqrt(emod / _SOIL["emod"]))
+		yield Level(f"{level:.0f}", level, {"specimen": {"emod": emod}} if kappa else {}, math.sqrt(emod / _SOIL.emod))
 
 
-def _values(section, key, base, values, cost=lambda value: 1.0):
-	"""Levels of a number of the configuration, with ``base`` its value in the base test."""
+def _values(section, key, values, cost=lambda value: 1.0):
+	"""Levels of a number of the configuration."""
+	base = getattr(getattr(_QUICK, section), key)
 	return [Level(f"{v:g}", v, {} if v == base else {section: {key: v}}, cost(v)) for v in values]
 
 
@@ -105,12 +107,12 @@ def _times(section, key, base):
 
 def _sizes():
 	for ratio, cost, slow in ((0.4, 3.5, False), (0.2, 28, True), (0.6, 1.6, False), (0.8, 1, False), (1.0, 0.8, False), (1.5, 0.7, False), (2.0, 0.6, False)):
-		yield Level(f"{ratio:g}", ratio, {} if ratio == 0.8 else {"membrane": {"sizeRatio": ratio}}, cost, slow=slow)
+		yield Level(f"{ratio:g}", ratio, {} if ratio == _QUICK.membrane.sizeRatio else {"membrane": {"sizeRatio": ratio}}, cost, slow=slow)
 
 
 def _numbers():
 	for grains, slow in ((3000, False), (500, False), (1200, False), (7000, True), (30000, True)):
-		yield Level(f"{grains}", grains, {} if grains == _SOIL["grains"] else {"specimen": {"grains": grains}}, (grains / _SOIL["grains"]) ** (4 / 3), slow=slow)
+		yield Level(f"{grains}", grains, {} if grains == _SOIL.grains else {"specimen": {"grains": grains}}, (grains / _SOIL.grains) ** (4 / 3), slow=slow)
 
 
 def _tiers():
@@ -127,15 +129,15 @@ def knobs():
 	return [
 		Knob("velocity", "inertial number", list(_velocities()), theory=1),
 		Knob("stiffness", "kn/(p d)", list(_moduli()), theory=-1),
-		Knob("damping", "local damping", _values("numerics", "damping", 0.2, (0.1, 0.2, 0.3, 0.5, 0.7, 0.9)), theory=0),
+		Knob("damping", "local damping", _values("numerics", "damping", (0.1, 0.2, 0.3, 0.5, 0.7, 0.9)), theory=0),
 		Knob("size ratio", "R/r", list(_sizes()), theory=0),
-		Knob("skin", "skin over the smallest radius", _values("numerics", "skin", 0.3, (0.1, 0.3, 0.6))),
+		Knob("skin", "skin over the smallest radius", _values("numerics", "skin", (0.1, 0.3, 0.6))),
 		Knob(
 			"mass scaling", "factor on the mass of all grains", [Level("off", 1.0), Level("on", change=raised, cost=0.85), Level("on with the membrane", change={**raised, **freed}, cost=0.45)],
 			log=r"grains' mass times ([\d.]+)",
 		),
-		Knob("step", "share of the critical step", _values("numerics", "safety", 0.5, (0.1, 0.2, 0.4, 0.5, 0.8), lambda safety: 0.5 / safety), theory=2),
-		Knob("density scaling", "factor on the membrane's mass", _values("membrane", "densityScaling", 1, (1, 4, 16, 64)), theory=1),
+		Knob("step", "share of the critical step", _values("numerics", "safety", (0.1, 0.2, 0.4, 0.5, 0.8), lambda safety: 0.5 / safety), theory=2),
+		Knob("density scaling", "factor on the membrane's mass", _values("membrane", "densityScaling", (1, 4, 16, 64)), theory=1),
 		Knob(
 			"density scaling of a fine membrane", "factor on the membrane's mass at R/r = 0.4",
 			[Level("1", 1.0, fine, 3.5, run="size ratio 0.4"), Level("as needed", change=fine, cost=2)],
@@ -146,7 +148,7 @@ def knobs():
 		Knob("soil loops", "consolidation.stressTime over d sqrt(rho/p)", _times("consolidation", "stressTime", None), theory=1),
 		Knob(
 			"shear springs", "Poisson's ratio of the lattice",
-			[Level("0.333", 0.333, alike, 1.3), Level("none", 1 / 3), *_values("membrane", "poisson", 1 / 3, (0.3, 0.2), lambda _: 1.3)],
+			[Level("0.333", 0.333, alike, 1.3), Level("none", 1 / 3), *_values("membrane", "poisson", (0.3, 0.2), lambda _: 1.3)],
 		),
 		Knob("area rule", "", [Level("tributary"), Level("cube", change={"membrane": {"areaRule": "cube"}})]),
 		Knob("surface", "", [Level("inner"), Level("centre", change={"membrane": {"surface": "centre"}})]),
@@ -166,4 +168,4 @@ def short():
 		"output": {"records": 12},
 	}
 	velocity = Knob("velocity", "velocity [m/s]", [Level("0.2", 0.2), Level("0.8", 0.8, {"shear": {"velocity": 0.8}}), Level("1.6", 1.6, {"shear": {"velocity": 1.6}})], theory=1)
-	return common, [velocity, Knob("damping", "local damping", _values("numerics", "damping", 0.2, (0.2, 0.7)))]
+	return common, [velocity, Knob("damping", "local damping", _values("numerics", "damping", (0.2, 0.7)))]
