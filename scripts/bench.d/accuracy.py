@@ -87,18 +87,21 @@ class Study:
 		digest = hashlib.sha1((out / "packing.txt").read_bytes()).hexdigest()[:12]
 		return curves.Run(seed, digest, curves.quantities(table), table["step"][-1], table["elapsed"][-1], float(x[1]) if x else math.nan)
 
-	def ended(self):
+	def hasEnded(self, name):
+		"""Whether a run has a result, whatever it is."""
+		return survey.log(name, self.folder).is_file()
+
+	def whole(self):
 		"""Name of a level's runs -> seed -> :class:`curves.Run`, of those that came to their end."""
 		found = {}
 		for name, (level, seed, _) in self.jobs.items():
-			log = self.folder / f"{survey.place(name, self.folder).name}.log"
-			if log.is_file() and log.read_text().split()[0] == "0":
+			if self.hasEnded(name) and survey.log(name, self.folder).read_text().split()[0] == "0":
 				found.setdefault(level.run, {})[seed] = self.result(name)
 		return found
 
 	def tell(self):
 		"""Write curves.csv from all runs that there are, and print the orders; its rows."""
-		rows = curves.curves(self.knobs, self.ended())
+		rows = curves.curves(self.knobs, self.whole())
 		write(str(self.folder / "curves.csv"), curves.HEADER, [[f"{cell:.6g}" if isinstance(cell, float) else cell for cell in row] for row in rows])
 		print(*curves.orders(self.knobs, rows), sep="\n")
 		return rows
@@ -111,7 +114,7 @@ def _arguments(argv):
 	parser.add_argument("--runs", type=int, help="how many, from the first on (default: all)")
 	parser.add_argument("--slow", action="store_true", help="slow levels too: a membrane of R/r = 0.2, 7,000 and 30,000 grains")
 	parser.add_argument("--list", action="store_true", help="print the runs with what they cost, base runs counting 1, and run none")
-	parser.add_argument("--short", action="store_true", help="two knobs on 150 grains to 1.2 % strain: a test of the study itself")
+	parser.add_argument("--short", action="store_true", help="three velocities on 150 grains to 1.2 % strain: a test of the study itself")
 	return parser.parse_args(argv)
 
 
@@ -129,7 +132,8 @@ def main(argv):
 		print(f"{len(wanted)} runs, {sum(costs):.0f} times a base run, about {MINUTES * sum(costs):.0f} processor minutes")
 		return None
 	csv = str(arguments.folder / "runs.csv")
-	survey.runAll(wanted, study.run, arguments.folder, arguments.processes, lambda rows: write(csv, HEADER, rows))
+	told = [name for name in study.jobs if name in wanted or study.hasEnded(name)]
+	survey.runAll(told, study.run, arguments.folder, arguments.processes, lambda rows: write(csv, HEADER, rows))
 	study.tell()
 	return None
 

@@ -37,11 +37,15 @@ def place(name, folder):
 	return folder / name.replace(", ", "_").replace(" ", "-").replace("/", "-per-")
 
 
+def log(name, folder):
+	"""The file that holds a run's result, once it has one."""
+	return folder / f"{place(name, folder).name}.log"
+
+
 def run(name, keys, folder):
 	"""One test in a process of its own, one thread, unless it has a result: (exit code, last error, its folder)."""
-	out = place(name, folder)
-	log = folder / f"{out.name}.log"
-	if not log.is_file():
+	out, result = place(name, folder), log(name, folder)
+	if not result.is_file():
 		out.mkdir(exist_ok=True)
 		file = folder / f"{out.name}.yaml"
 		file.write_text(yaml.safe_dump(keys))
@@ -52,8 +56,8 @@ def run(name, keys, folder):
 		if ended.returncode in ENDED:
 			return ended.returncode, "was ended from outside; call the survey again", out
 		errors = [line for line in ended.stderr.splitlines() if line.startswith("error: ")]
-		log.write_text(f"{ended.returncode} {errors[-1] if errors else ''}\n")
-	code, _, message = log.read_text().strip().partition(" ")
+		result.write_text(f"{ended.returncode} {errors[-1] if errors else ''}\n")
+	code, _, message = result.read_text().strip().partition(" ")
 	return int(code), message, out
 
 
