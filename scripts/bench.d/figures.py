@@ -7,7 +7,6 @@ The band is the scatter between packings of the base test: an error well inside 
 """
 
 import argparse
-import csv
 import math
 import pathlib
 
@@ -15,6 +14,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plot  # noqa: E402
+import table  # noqa: E402
 
 #: Quantity -> (file, what an error of 1 is called).
 PICTURES = {
@@ -33,9 +33,8 @@ def read(path):
 	"""
 	if not path.is_file():
 		raise SystemExit(f"figures: '{path}': there is no such file; fix: run the study first")
-	with open(path, newline="") as file:
-		rows = csv.DictReader(line for line in file if not line.startswith("#"))
-		return [{name: cell if name in ("knob", "value", "quantity", "paired") else float(cell) for name, cell in row.items()} for row in rows]
+	texts = ("knob", "value", "quantity", "paired")
+	return [{name: cell if name in texts else float(cell) for name, cell in row.items()} for row in table.read(path)]
 
 
 def picture(rows, quantity, unit, path):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The study of speed against error: its jobs, its statistics against closed forms, and its short form from the runs to the pictures."""
 
-import csv
 import importlib
 import math
 import pathlib
@@ -70,7 +69,7 @@ def test_quantities(part):
 
 	found = curves.quantities(records(61, 0.15, q))
 	assert found["q at 1 %"] == pytest.approx(2e4) and found["q at 15 %"] == pytest.approx(9e4)
-	assert found["peak q"] == pytest.approx(1e4 + 1e5 * (1 - 0.075)) and found["strain at peak"] == pytest.approx(0.125)  # the high row's five
+	assert found["peak q"] == pytest.approx(1e4 + 1e5 * (1 - 0.07)) and found["strain at peak"] == pytest.approx(0.12)  # of the five rows with the high one last
 	assert found["volumetric strain at 15 %"] == pytest.approx(0.03)
 	assert found["mean q from 10 to 15 %"] == pytest.approx(1e5 * (1 - 0.075) + 5e4 / 21)
 	assert [found[f"start: {name}"] for name in ("axial", "radial", "middle axial", "middle radial")] == pytest.approx([1, 0.01, -0.01, 0])
@@ -113,7 +112,7 @@ def test_numbersOfGrainsHaveNoPackingInCommon(part):
 @pytest.mark.parametrize("power", [1.0, 2.0])
 def test_order(part, power):
 	x = numpy.array([0.2, 0.4, 0.5, 0.8])
-	found = part("curves").order(x, 3 * (x**power - 0.1**power), numpy.full(4, 1e-3), 0.1)
+	found = part("curves").order(x, 3 * (x**power - 0.1**power), numpy.full(4, 0.05), 0.1)
 	assert found[0] == pytest.approx(power, abs=0.011) and found[1] < power < found[2] and found[3] == pytest.approx(3, rel=0.02)
 	assert part("curves").order(x[:2], x[:2], x[:2], 0.1) is None
 
@@ -122,8 +121,7 @@ def test_shortForm(part, tmp_path, capsys, monkeypatch):
 	"""Runs, tables and pictures; a second call runs nothing; a run that was ended from outside is no result."""
 	accuracy, survey = part("accuracy"), part("survey")
 	accuracy.main([str(tmp_path), "--short", "--packings", "2", "--processes", "2"])
-	with open(tmp_path / "runs.csv", newline="") as file:
-		rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+	rows = part("table").read(tmp_path / "runs.csv")
 	assert len(rows) == 6 and all(row["outcome"] == "done" and float(row["q at 1 % [Pa]"]) > 0 for row in rows)
 	assert len({row["packing"] for row in rows}) == 2 and not list(tmp_path.glob("*/*.yade.gz"))
 	found = [row for row in part("figures").read(tmp_path / "curves.csv") if row["quantity"] == "q at 1 %"]
