@@ -61,6 +61,11 @@ class Specimen:
 		openLow=True,
 	)
 	kratio: float = key(3.0, "kn/ks of the contacts", "", low=1, high=1000)
+	massScaling: bool = key(
+		False,
+		"grains smaller than the largest get its mass times their share of its radius, m = m_max r/r_max: all grains then have the critical step of the "
+		"largest, volumes and forces stay, inertia grows",
+	)
 
 	def check(self, path):
 		if (self.packing is None) == (self.gradation is None):

@@ -39,7 +39,7 @@ class Grains:
 	:param ids: of their bodies.
 	:param solidVolume: of all of them [m3].
 	:param meanDiameter: by volume [m].
-	:param density: [kg/m3].
+	:param density: of their material [kg/m3]; their masses may be raised (``specimen.massScaling``).
 	"""
 
 	ids: list
@@ -52,7 +52,7 @@ class Grains:
 		ids = list(ids)
 		radii = BodyArrays.radii(ids)
 		solid = 4 / 3 * math.pi * float((radii**3).sum())
-		return cls(ids, solid, 2 * float((radii**3).mean()) ** (1 / 3), float(BodyArrays.masses(ids).sum()) / solid)
+		return cls(ids, solid, 2 * float((radii**3).mean()) ** (1 / 3), O.bodies[ids[0]].material.density)
 
 
 def escaped(scene, grains):

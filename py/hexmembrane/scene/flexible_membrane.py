@@ -135,7 +135,7 @@ class FlexibleMembrane(LateralBoundary):
 		bending = bendingStiffness(config, packing.radii)
 		sheet = sheetEngines(keys, membrane, bending)
 		unscaled = timestep.membraneStep(config.specimen, keys.density, largest, membrane.sphereRadius, sheetStep(sheet))
-		scaling = timestep.densityScaling(keys.densityScaling, timestep.grainStep(config.specimen, smallest), unscaled)
+		scaling = timestep.densityScaling(keys.densityScaling, timestep.grainStep(config.specimen, packing.radii), unscaled)
 		scaleDensity(membrane, scaling)
 
 		inertial = timestep.inertialTime(packing.radii, config.specimen.density, config.consolidation.pressure)

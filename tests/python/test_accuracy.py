@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The study of speed against error: its jobs, its statistics against closed forms, and its short form from the runs to the pictures."""
+
+import importlib
+import math
+import pathlib
+import sys
+
+import numpy
+import pytest
+from hexmembrane.configuration import Config
+from PIL import Image
+from scipy.stats import t as student
+
+FOLDER = pathlib.Path(__file__).parents[2] / "scripts" / "bench.d"
+
+
+@pytest.fixture(scope="module")
+def part():
+	"""The study's modules by name, which stand beside each other."""
+	before = list(sys.path)
+	sys.path.insert(0, str(FOLDER))
+	yield importlib.import_module
+	sys.path[:] = before
+
+
+@pytest.fixture
+def study(part, tmp_path):
+	return part("accuracy").Study(tmp_path, 8)
+
+
+def test_jobs(study):
+	"""Sound configurations, the base runs first, each knob's reference first among its levels and none run twice."""
+	names = list(study.jobs)
+	assert [name.split(",")[0] for name in names[:9]] == ["base"] * 8 + ["velocity 0.0075"]
+	configurations = {name: study.configuration(name) for name in names if name.endswith("seed 7")}
+	for keys in configurations.values():
+		Config.of(keys)
+	assert len({repr(keys) for keys in configurations.values()}) == len(configurations)
+	for knob in study.knobs:
+		assert any(name.startswith(f"{knob.levels[0].run}, ") for name in names), f"{knob.name} has no reference run"
+		assert knob.theory is None or not math.isnan(knob.levels[0].x)
+		costs = [level.cost for name, (level, seed, _) in study.jobs.items() if seed == 7 and level in knob.levels and level.run != "base"]
+		assert costs == sorted(costs, reverse=True), "the longest of a knob begin first"
+
+
+def test_slowLevelsAreAsked(part, tmp_path):
+	names = [set(part("accuracy").Study(tmp_path, 2, slow=slow).jobs) for slow in (False, True)]
+	assert names[1] - names[0] == {f"{what}, seed {seed}" for what in ("size ratio 0.2", "grains 7000", "grains 30000") for seed in (7, 8)}
+
+
+def records(rows, last, q):
+	"""A table of records with one row of consolidation before the shear."""
+	strain = numpy.linspace(0, last, rows)
+	columns = {"axial_strain": strain, "q": q(strain), "volumetric_strain_volume": 0.2 * strain}
+	columns.update(sigma3_target=numpy.full(rows, 1e5), soil_radial=numpy.full(rows, 1.01e5), soil_radial_middle=numpy.full(rows, 1e5))
+	columns.update(soil_axial=numpy.full(rows, 2e5), soil_axial_middle=numpy.full(rows, 0.99e5), boundary_axial=numpy.full(rows, 2e5))
+	columns["boundary_radial"] = 1.01e5 + 1e4 * (numpy.arange(rows) == 3)
+	table = {name: numpy.concatenate([[0.0], column]) for name, column in columns.items()}
+	return {"stage": ["consolidation"] + ["shear"] * rows, **table}
+
+
+def test_quantities(part):
+	"""Of a q that rises linearly, has one high row, and falls."""
+	curves = part("curves")
+
+	def q(strain):
+		return 1e5 * numpy.minimum(strain / 0.05, 1 - (strain - 0.05)) + 5e4 * (numpy.arange(len(strain)) == 50)
+
+	found = curves.quantities(records(61, 0.15, q))
+	assert found["q at 1 %"] == pytest.approx(2e4) and found["q at 15 %"] == pytest.approx(9e4)
+	assert found["peak q"] == pytest.approx(1e4 + 1e5 * (1 - 0.07)) and found["strain at peak"] == pytest.approx(0.12)  # of the five rows with the high one last
+	assert found["volumetric strain at 15 %"] == pytest.approx(0.03)
+	assert found["mean q from 10 to 15 %"] == pytest.approx(1e5 * (1 - 0.075) + 5e4 / 21)
+	assert [found[f"start: {name}"] for name in ("axial", "radial", "middle axial", "middle radial")] == pytest.approx([1, 0.01, -0.01, 0])
+	assert found["boundary against contacts"] == pytest.approx(0.05)
+	short = curves.quantities(records(5, 0.01, q))
+	assert short["q at 1 %"] == pytest.approx(2e4) and math.isnan(short["peak q"]) and math.isnan(short["q at 15 %"])
+
+
+def runs(part, seeds, q, steps=100.0, packing="p{}"):
+	"""Seed -> run with the value q(seed) as every quantity."""
+	curves = part("curves")
+	return {seed: curves.Run(seed, packing.format(seed), dict.fromkeys(curves.QUANTITIES, q(seed)), steps, steps) for seed in seeds}
+
+
+def test_pairedDifferences(part):
+	"""The packings' own scatter is not in them; relative ones are relative to the same packing's value."""
+	curves, knobs = part("curves"), part("knobs")
+	knob = knobs.Knob("velocity", "v", [knobs.Level("slow", 1.0), knobs.Level("fast", 2.0, {"a": 1})])
+	known = {"base": runs(part, (7, 8, 9), lambda s: 10.0 * s), "velocity fast": runs(part, (7, 8, 9, 10), lambda s: 10.0 * s + s - 8, steps=50)}
+	rows = {(row[0], row[1], row[3]): row for row in curves.curves([knob], known)}
+	relative, absolute = (rows["velocity", "fast", name] for name in ("peak q", "strain at peak"))
+	differences = [-1 / 70, 0, 1 / 90]
+	assert relative[4] == pytest.approx(numpy.mean(differences)) and relative[5] == pytest.approx(numpy.std(differences, ddof=1))
+	assert absolute[4:7] == pytest.approx((0, 1, student.ppf(0.975, 2) / math.sqrt(3))) and absolute[7:] == (3, 0.5, 0.5, "yes")
+	assert rows["velocity", "slow", "peak q"][4:7] == (0, 0, 0)
+	assert rows["packings", "base", "peak q"][5] == pytest.approx(10 / 80)
+	known["velocity fast"] = runs(part, (7, 8), lambda s: 1.0, packing="other{}")
+	with pytest.raises(ValueError, match="seed 7 has another packing at the reference level; fix: "):
+		curves.curves([knob], known)
+
+
+def test_numbersOfGrainsHaveNoPackingInCommon(part):
+	curves, knobs = part("curves"), part("knobs")
+	knob = knobs.Knob("grains", "n", [knobs.Level("3000", 3000.0, {"a": 3}), knobs.Level("500", 500.0, {"a": 1})], paired=False)
+	known = {"grains 3000": runs(part, (7, 8, 9), lambda s: 2.0 * s), "grains 500": runs(part, (7, 8, 9), lambda s: 4.0 * (s - 8) + 20, packing="other")}
+	row = next(row for row in curves.curves([knob], known) if row[:4] == ("grains", "500", 500.0, "peak q"))
+	assert row[4:6] == pytest.approx((20 / 16 - 1, 4 / 16)) and row[-1] == "no" and math.isnan(row[-3])
+
+
+@pytest.mark.parametrize("power", [1.0, 2.0])
+def test_order(part, power):
+	x = numpy.array([0.2, 0.4, 0.5, 0.8])
+	found = part("curves").order(x, 3 * (x**power - 0.1**power), numpy.full(4, 0.05), 0.1)
+	assert found[0] == pytest.approx(power, abs=0.011) and found[1] < power < found[2] and found[3] == pytest.approx(3, rel=0.02)
+	assert part("curves").order(x[:2], x[:2], x[:2], 0.1) is None
+
+
+def test_shortForm(part, tmp_path, capsys, monkeypatch):
+	"""Runs, tables and pictures; a second call runs nothing; a run that was ended from outside is no result."""
+	accuracy, survey = part("accuracy"), part("survey")
+	accuracy.main([str(tmp_path), "--short", "--packings", "2", "--processes", "2"])
+	rows = part("table").read(tmp_path / "runs.csv")
+	assert len(rows) == 6 and all(row["outcome"] == "done" and float(row["q at 1 % [Pa]"]) > 0 for row in rows)
+	assert len({row["packing"] for row in rows}) == 2 and not list(tmp_path.glob("*/*.yade.gz"))
+	found = [row for row in part("figures").read(tmp_path / "curves.csv") if row["quantity"] == "q at 1 %"]
+	assert [row["value"] for row in found] == ["base", "0.4", "0.8", "1.6"] and [row["packings"] for row in found] == [2] * 4
+	assert [row["x"] for row in found[1:]] == [0.4, 0.8, 1.6] and 1 > found[2]["steps"] > found[3]["steps"] > 0.3
+	accuracy.main(["figures", str(tmp_path)])
+	assert min(Image.open(tmp_path / "q-early.png").size) > 250
+	monkeypatch.setattr(survey.subprocess, "run", None)
+	accuracy.main([str(tmp_path), "--short", "--packings", "2"])
+	ended = type("Ended", (), {"returncode": 130, "stderr": ""})
+	monkeypatch.setattr(survey.subprocess, "run", lambda *_, **__: ended)
+	assert survey.run("other", {}, tmp_path)[0] == 130 and not survey.log("other", tmp_path).is_file()
+	capsys.readouterr()
+	accuracy.main([str(tmp_path), "--short", "--packings", "2", "--list"])
+	assert "6 runs, " in capsys.readouterr().out
