@@ -23,7 +23,7 @@ struct Filled {
 	std::vector<Place> grains;
 	std::vector<int> ids;
 
-	GrainRows rows() const { return {grains.data(), ids.data(), int(grains.size())}; }
+	SphereRows rows() const { return {grains.data(), ids.data(), int(grains.size())}; }
 	FacetContact kernel() const { return {tube, tube.sphereRadius, offsetOf(tube), kn}; }
 	void compute(FacetContact& facets) const
 	{

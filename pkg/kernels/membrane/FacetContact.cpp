@@ -140,7 +140,7 @@ bool FacetContact::surrounded(const Foot& foot, Vec3& normal) const
 	return round > 0.99;
 }
 
-void FacetContact::touch(int grain, const GrainRows& rows, const Foot& foot)
+void FacetContact::touch(int grain, const SphereRows& rows, const Foot& foot)
 {
 	const double r = rows.places[grain].radius, away = std::sqrt(foot.square);
 	if (!(away < r + h)) return;
@@ -162,7 +162,7 @@ void FacetContact::touch(int grain, const GrainRows& rows, const Foot& foot)
 	                    overlap});
 }
 
-bool FacetContact::grainsHold(const GrainRows& rows) const
+bool FacetContact::grainsHold(const SphereRows& rows) const
 {
 	if (std::size_t(rows.count) != listedGrains.size()) return false;
 	// grains that have changed places are further apart than this
@@ -171,7 +171,7 @@ bool FacetContact::grainsHold(const GrainRows& rows) const
 	return most < 0.25 * skin * skin;
 }
 
-void FacetContact::makeLists(const GrainRows& rows)
+void FacetContact::makeLists(const SphereRows& rows)
 {
 	++made;
 	listed = *x;
@@ -212,7 +212,7 @@ void FacetContact::makeLists(const GrainRows& rows)
 	std::sort(near.begin(), near.end(), [](const Near& a, const Near& b) { return std::array{a.grain, a.triangle} < std::array{b.grain, b.triangle}; });
 }
 
-void FacetContact::compute(const PaddedRings& position, const std::function<GrainRows()>& grains)
+void FacetContact::compute(const PaddedRings& position, const std::function<SphereRows()>& grains)
 {
 	x = &position;
 	const int n = stencil.perRing;
@@ -223,7 +223,7 @@ void FacetContact::compute(const PaddedRings& position, const std::function<Grai
 	last = -1;
 	const bool sheetHolds = nearerThan(0.5 * skin, stencil, position, listed);
 	if (sheetHolds && !anyLong) return;
-	const GrainRows rows = grains();
+	const SphereRows rows = grains();
 	if (!sheetHolds || !grainsHold(rows)) makeLists(rows);
 	for (std::size_t p = 0; p < near.size();) {
 		const int grain = near[p].grain;

@@ -10,13 +10,6 @@
 
 namespace hexmembrane {
 
-/// The spheres inside a membrane, where the caller has them. Their order may change from call to call, their ids name them.
-struct GrainRows {
-	const Place* places = nullptr;
-	const int* ids = nullptr;
-	int count = 0;
-};
-
 /// Contact of grains with the sheet between the particles of a hexagonal tube: the triangles of their centres, thickened by an offset h. A grain of radius r at
 /// c whose nearest point P of the triangles is at the distance d has one contact, without friction or damping. Its force kn (r + h - d) acts along c - P. The
 /// three corners take the reaction by P's barycentric weights: forces and moments balance, and the forces are minus the gradient of the energy.
@@ -37,7 +30,7 @@ public:
 
 	/// Forces (N) at these positions, whose rows are wrapped. `grains` is asked when lists are made, and while a triangle is long enough to act.
 	/// \throws FieldError for a grain that is nowhere
-	void compute(const PaddedRings& position, const std::function<GrainRows()>& grains);
+	void compute(const PaddedRings& position, const std::function<SphereRows()>& grains);
 
 	/// A grain that touches, at the last compute().
 	struct Contact {
@@ -83,9 +76,9 @@ private:
 	Vec3 inwards(const Triangle& t) const;
 	Foot footOn(int triangle, const Vec3& centre) const;
 	bool surrounded(const Foot& foot, Vec3& normal) const;
-	void touch(int grain, const GrainRows& rows, const Foot& foot);
-	bool grainsHold(const GrainRows& rows) const;
-	void makeLists(const GrainRows& rows);
+	void touch(int grain, const SphereRows& rows, const Foot& foot);
+	bool grainsHold(const SphereRows& rows) const;
+	void makeLists(const SphereRows& rows);
 
 	HexStencil stencil;
 	double radius = 0, h = 0, kn = 0, skin = 0;
