@@ -47,8 +47,9 @@ Vec3 inwardsOf(const HexLattice& tube, const std::array<int, 3>& t)
 	return -(tube.positions[t[1]] - a).cross(tube.positions[t[2]] - a).normalized();
 }
 
-/// A tube stretched by a factor that may change along it, and shaken, with grains near its triangles: within r + h, on both sides, and beyond.
-Filled stretched(double below, double above, unsigned seed)
+/// A tube stretched by a factor that may change along it, and shaken, with grains near its triangles: within r + h and beyond.
+/// \param past way (m) that the nearest stand past the sheet
+Filled stretched(double below, double above, unsigned seed, double past = 0)
 {
 	Filled s{support::smallTube(), {}, {}};
 	const double middle = s.tube.positions[s.tube.particles() / 2][2];
@@ -64,7 +65,7 @@ Filled stretched(double below, double above, unsigned seed)
 		if (a + b > 1) a = 1 - a, b = 1 - b;
 		const Vec3 foot = s.tube.positions[corner[0]] + a * (s.tube.positions[corner[1]] - s.tube.positions[corner[0]]) +
 		                  b * (s.tube.positions[corner[2]] - s.tube.positions[corner[0]]);
-		s.put(foot + (1.3 * (r + h) * u(random) - 0.5 * h * u(random)) * inwardsOf(s.tube, corner), r);
+		s.put(foot + (0.3 * h + 1.3 * (r + h) * u(random) - past) * inwardsOf(s.tube, corner), r);
 	}
 	return s;
 }
@@ -74,7 +75,7 @@ Filled stretched(double below, double above, unsigned seed)
 TEST(FacetContact, equalsTheOracle)
 {
 	for (unsigned seed = 1; seed < 4; ++seed) {
-		const Filled s = stretched(1.6, 1.5, seed);
+		const Filled s = stretched(1.6, 1.5, seed, 3e-4);
 		FacetContact fast = s.kernel();
 		s.compute(fast);
 		const auto slow = s.slow(true);
@@ -98,9 +99,6 @@ TEST(FacetContact, equalsTheOracleBesideTrianglesThatDoNotAct)
 {
 	// half of the tube is as it was made; a grain beside the border touches the last triangle that acts
 	Filled s = stretched(1, 1.5, 4);
-	s.grains.erase(std::remove_if(s.grains.begin(), s.grains.end(), [&](const Place& g) { return std::hypot(g.centre[0], g.centre[1]) > 0.0295; }), s.grains.end());
-	s.ids.resize(s.grains.size());
-	s.put({0, 0, 0.01}, smallestOf(s.tube));
 	FacetContact fast = s.kernel();
 	s.compute(fast);
 	const auto slow = s.slow(false);
@@ -163,16 +161,18 @@ TEST(FacetContact, energyIsContinuousAlongWaysAcrossEdgesAndThroughTheSheet)
 	s.ids.clear();
 	s.put(middle, r);
 	FacetContact kernel = s.kernel();
-	const int steps = 4000;
-	// over a dozen triangles at a height; and from far inside to just before the grain counts as outside
-	for (const auto& [start, end] : {std::pair<Vec3, Vec3>{middle + 0.8 * r * inwards - 8 * R * along, middle + 0.5 * r * inwards + 8 * R * along},
+	const int steps = 1000;
+	// over triangles and edges, and through the sheet askew; and from far inside to just before the grain counts as outside
+	for (const auto& [start, end] : {std::pair<Vec3, Vec3>{middle + 0.8 * r * inwards - 4 * R * along, middle + 0.5 * r * inwards + 4 * R * along},
 	                                 std::pair<Vec3, Vec3>{middle + 1.5 * (r + h) * inwards, middle - 0.98 * h * inwards}}) {
 		double before = -1, most = 0;
 		for (int step = 0; step <= steps; ++step) {
 			s.grains[0].centre = start + double(step) / steps * (end - start);
 			s.compute(kernel);
 			const double energy = kernel.energy();
-			if (before >= 0) EXPECT_LT(std::abs(energy - before), 2 * kn * (r + 2 * h) * (end - start).norm() / steps) << "step " << step;
+			if (before >= 0) {
+				EXPECT_LT(std::abs(energy - before), 2 * kn * (r + 2 * h) * (end - start).norm() / steps) << "step " << step;
+			}
 			before = energy;
 			most = std::max(most, energy);
 		}
@@ -269,10 +269,10 @@ TEST(FacetContact, bitsDependOnThePlacesAlone)
 	FacetContact onTheWay = s.kernel();
 	const int steps = 200;
 	for (int step = 0; step <= steps; ++step) {
-		const double share = double(step) / steps;
+		const double share = 0.8 + 0.2 * step / steps;
 		for (size_t i = 0; i < s.tube.positions.size(); ++i)
 			s.tube.positions[i] = start.positions[i] + share * (end.tube.positions[i] - start.positions[i]);
-		for (size_t g = 0; g < s.grains.size(); ++g) s.grains[g].centre = (0.7 + 0.3 * share) * end.grains[g].centre;
+		for (size_t g = 0; g < s.grains.size(); ++g) s.grains[g].centre = (0.5 + 0.5 * share) * end.grains[g].centre;
 		s.compute(onTheWay);
 		if (step % 40 != 0) continue;
 		Filled turned = s;
@@ -288,11 +288,13 @@ TEST(FacetContact, bitsDependOnThePlacesAlone)
 			EXPECT_EQ(onTheWay.touching().size(), fresh.touching().size());
 		}
 		if (step % 80 != 0) continue;
+		const std::vector<Vec3> before = onTheWay.force.vectors();
 		turned.compute(onTheWay); // the same kernel meets another order
-		EXPECT_EQ(onTheWay.touching().size(), onTheWay.touching().size());
+		EXPECT_EQ(onTheWay.force.vectors(), before);
 	}
 	EXPECT_FALSE(onTheWay.touching().empty());
-	EXPECT_LT(onTheWay.listsMade(), steps);
+	EXPECT_GT(onTheWay.listsMade(), 5);
+	EXPECT_LT(onTheWay.listsMade(), steps / 3);
 	s.tube = start;
 	s.compute(onTheWay);
 	for (const Vec3& f : onTheWay.force.vectors()) EXPECT_EQ(f, Vec3::Zero());
