@@ -137,7 +137,7 @@ vector<Vector3r> CompactLoop::contactForces(const HexMembrane& membrane) const
 
 vector<Vector3r> CompactLoop::withEngines(vector<Vector3r> forces) const
 {
-	for (const Stepped* one : stepped) one->addContactForces(*state->sheet.ids, forces);
+	Stepped::forEachOf(engines, [&](const Stepped& one) { one.addContactForces(*state->sheet.ids, forces); });
 	return forces;
 }
 
@@ -150,7 +150,7 @@ void CompactLoop::forEachContact(const VisitContact& visit) const
 
 void CompactLoop::visitEngines(const VisitContact& visit) const
 {
-	for (const Stepped* one : stepped) one->forEachContact(visit);
+	Stepped::forEachOf(engines, [&](const Stepped& one) { one.forEachContact(visit); });
 }
 
 void CompactLoop::exportContacts()

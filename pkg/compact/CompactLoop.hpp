@@ -26,7 +26,7 @@ public:
 	bool keepsContacts() const override { return state && !exported; }
 	vector<Vector3r> contactForces(const HexMembrane& membrane) const override;
 	void forEachContact(const VisitContact& visit) const override;
-	const vector<Stepped*>& steppedEngines() const override { return stepped; }
+	const vector<shared_ptr<Engine>>& innerEngines() const override { return engines; }
 
 private:
 	// CompactLoop.cpp: the run of a step

@@ -105,8 +105,11 @@ public:
 	//! Calls visit(particle, id of a grain, unit vector from one to the other, kn) for each spring between them: as forEachBond().
 	using VisitSupport = std::function<void(int, Body::id_t, const Vector3r&, Real)>;
 	virtual void forEachSupport(const VisitSupport&) const {}
-	//! Calls visit for each engine of a scene that acts, in either tier.
-	static void forEachIn(const Scene& scene, const std::function<void(const Stepped&)>& visit);
+	//! Calls visit for each of these engines that is stepped and not dead.
+	using Visit = std::function<void(const Stepped&)>;
+	static void forEachOf(const vector<shared_ptr<Engine>>& engines, const Visit& visit);
+	//! Calls visit for each such engine of a scene, in either tier.
+	static void forEachIn(const Scene& scene, const Visit& visit);
 	//! The membrane that it acts on, none: no membrane.
 	virtual const HexMembrane* actsOn() const { return nullptr; }
 	//! Whether there may be several engines of this class in a list.
@@ -134,8 +137,8 @@ public:
 	virtual vector<Vector3r> contactForces(const HexMembrane& membrane) const = 0;
 	//! As StepView::forEachContact(), of the last step.
 	virtual void forEachContact(const VisitContact& visit) const = 0;
-	//! The engines that it steps, those that act.
-	virtual const vector<Stepped*>& steppedEngines() const = 0;
+	//! The engines that it steps.
+	virtual const vector<shared_ptr<Engine>>& innerEngines() const = 0;
 };
 
 } // namespace yade

@@ -66,12 +66,18 @@ const Engine* ContactKeeper::of(const Scene& scene)
 	return nullptr;
 }
 
-void Stepped::forEachIn(const Scene& scene, const std::function<void(const Stepped&)>& visit)
+void Stepped::forEachOf(const vector<shared_ptr<Engine>>& engines, const Visit& visit)
 {
-	if (const auto* keeper = dynamic_cast<const ContactKeeper*>(ContactKeeper::of(scene)))
-		for (const Stepped* one : keeper->steppedEngines()) visit(*one);
-	for (const auto& engine : scene.engines)
-		if (const auto* one = engine->dead ? nullptr : dynamic_cast<const Stepped*>(engine.get())) visit(*one);
+	for (const auto& engine : engines) {
+		const auto* one = dynamic_cast<const Stepped*>(engine.get());
+		if (one && !engine->dead) visit(*one);
+	}
+}
+
+void Stepped::forEachIn(const Scene& scene, const Visit& visit)
+{
+	const auto* keeper = dynamic_cast<const ContactKeeper*>(ContactKeeper::of(scene));
+	forEachOf(keeper ? keeper->innerEngines() : scene.engines, visit);
 }
 
 void Stepped::addContactForces(const vector<Body::id_t>& ids, vector<Vector3r>& onParticles) const

@@ -2,9 +2,9 @@
 // Cost of the membrane kernels, in ns a membrane particle and step (counter perParticle), fast against reference.
 #include "kernels/membrane/BendingForce.hpp"
 #include "kernels/membrane/BondForce.hpp"
+#include "kernels/membrane/FacetContact.hpp"
 #include "kernels/membrane/HexLattice.hpp"
 #include "kernels/membrane/PressureForce.hpp"
-#include "kernels/membrane/FacetContact.hpp"
 #include "kernels/membrane/SelfContact.hpp"
 #include "tests/kernels/oracle/BendingForceReference.hpp"
 #include "tests/kernels/oracle/BondForceReference.hpp"
