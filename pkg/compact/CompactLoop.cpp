@@ -58,12 +58,12 @@ public:
 			loop.gripMeters.push_back(&meter);
 		}
 	}
-	hexmembrane::SphereRows grains(const HexMembrane&) override
-	{
-		return {state.spheres.places.data(), state.spheres.id.data(), state.spheres.grains()};
-	}
+	hexmembrane::SphereRows grains(const HexMembrane&) override { return {state.spheres.places.data(), state.spheres.id.data(), state.spheres.grains()}; }
 	void addForce(int grain, const Vector3r& force) override { state.spheres.loads[grain].force += force; }
-	vector<Vector3r> contactForces(const HexMembrane&) override { return loop.withEngines(state.contactForces(state.spheres.places, state.spheres.shapes())); }
+	vector<Vector3r> contactForces(const HexMembrane&) override
+	{
+		return loop.withEngines(state.contactForces(state.spheres.places, state.spheres.shapes()));
+	}
 	ContactSums contacts(Body::id_t boundary) override
 	{
 		const int b = require(boundary);

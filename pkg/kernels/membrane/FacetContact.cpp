@@ -151,15 +151,8 @@ void FacetContact::touch(int grain, const SphereRows& rows, const Foot& foot)
 	if (away > 1e-9 * radius) normal = branch / distance; // else a centre on the sheet
 	const double overlap = r + h - distance;
 	const Triangle& t = triangles[foot.triangle];
-	contacts.push_back({grain,
-	                    rows.ids[grain],
-	                    t,
-	                    foot.weights,
-	                    {at(t[0]), at(t[1]), at(t[2])},
-	                    centre,
-	                    centre - (r - 0.5 * overlap) * normal,
-	                    normal,
-	                    overlap});
+	contacts.push_back(
+	        {grain, rows.ids[grain], t, foot.weights, {at(t[0]), at(t[1]), at(t[2])}, centre, centre - (r - 0.5 * overlap) * normal, normal, overlap});
 }
 
 bool FacetContact::grainsHold(const SphereRows& rows) const
