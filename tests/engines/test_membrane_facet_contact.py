@@ -78,7 +78,7 @@ def test_aGrainUnderAForceIsHeldByTheSheetAlone(O, tier, held):
 	facets = MembraneFacetContact(membrane=m, kn=STIFF, dead=not held)
 	O.engines = engines(tier, [slack(m), facets], damping=0.4, substeps=20, before=[ForceEngine(force=Vector3(*(-push * inwards)), ids=[grain])])
 	O.dt = 1e-5
-	run(600)
+	run(600 if held else 110)
 	height = (np.array(O.bodies[grain].state.pos) - middle) @ inwards
 	if held:
 		assert height == pytest.approx(radius + h - push / STIFF, abs=1e-3 * radius)
@@ -111,7 +111,7 @@ def test_aTornSheetLeaksAndSetsItsEnergyFree(O, tier):
 	assert bonds.brokenCount == 1 and facets.elasticEnergy() < stored
 	freed = dict(O.energy.items())["bondDissip"]
 	assert freed == pytest.approx(stored, rel=0.02) or freed == pytest.approx(stored + bondStored, rel=0.02)
-	run(600)
+	run(110)
 	assert (np.array(O.bodies[grain].state.pos) - middle) @ inwards < -m.sphereRadius - radius
 
 
@@ -188,7 +188,7 @@ def test_tiersAgree(O):
 		O.engines = engines(tier, [MembraneBonds(membrane=m, kn=4.0), facets], damping=0.2)
 		O.dt = 2e-5
 		run(150)
-		assert len(facets.grains) > 10
+		assert len(facets.grains) > 3
 		found.append(state())
 	assert np.abs(found[0] - found[1]).max() < 1e-9 * np.abs(found[0]).max()
 
