@@ -11,4 +11,11 @@ struct alignas(32) Place {
 	double radius;
 };
 
+/// Spheres where the caller has them. Their order may change from call to call; their ids name them.
+struct SphereRows {
+	const Place* places = nullptr;
+	const int* ids = nullptr;
+	int count = 0;
+};
+
 } // namespace hexmembrane
