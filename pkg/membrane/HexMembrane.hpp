@@ -40,7 +40,7 @@ public:
 	Real transmittedPressure(int group) const;
 	//! The same ring by ring (Pa).
 	vector<Real> transmittedByRing() const;
-	//! Sum of the normal contact forces of all that is not membrane on each particle (N), from O.interactions.
+	//! Sum of the normal contact forces of all that is not membrane on each particle (N), from O.interactions and the engines.
 	vector<Vector3r> contactForces(const Scene& scene, const string& who) const;
 	//! The pressure that a group transmits in this instant (Pa).
 	Real transmitted(StepView& view, int group, const string& who) const;

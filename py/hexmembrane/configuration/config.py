@@ -112,6 +112,10 @@ class Membrane:
 		openLow=True,
 	)
 	selfContact: bool = key(False, "a folded sheet meets itself: its spheres repel each other where they are no neighbours in the lattice")
+	facets: bool = key(
+		True,
+		"grains meet the sheet between the membrane's spheres where it is stretched, so that none presses itself through; not beside a broken bond",
+	)
 	tensileStrength: Optional[float] = key(None, "tension at which a bond of two membrane spheres breaks; none: never", "N", low=0, openLow=True)
 	shearStrength: Optional[float] = key(
 		None, "shear force at which such a bond breaks, with poisson below 1/3; none: never", "N", low=0, openLow=True
