@@ -59,6 +59,7 @@ public:
 		}
 	}
 	hexmembrane::SphereRows grains(const HexMembrane&) override { return {state.spheres.places.data(), state.spheres.id.data(), state.spheres.grains()}; }
+	hexmembrane::Travel travel() const override { return state.spheres.travel(); }
 	void addForce(int grain, const Vector3r& force) override { state.spheres.loads[grain].force += force; }
 	vector<Vector3r> contactForces(const HexMembrane&) override
 	{

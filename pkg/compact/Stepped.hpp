@@ -68,6 +68,8 @@ public:
 	virtual void grip(const HexMembrane& membrane, const vector<std::pair<int, Vector3r>>& rings, WorkMeter& meter) = 0;
 	//! The spheres that are not of this membrane; they stay where they are until the step ends.
 	virtual hexmembrane::SphereRows grains(const HexMembrane& membrane) = 0;
+	//! How far those spheres and the particles have gone; not known: look.
+	virtual hexmembrane::Travel travel() const { return {}; }
 	//! Adds a force to one of those rows.
 	virtual void addForce(int grain, const Vector3r& force) = 0;
 	//! Normal forces of the contacts of each particle with all that is not membrane (N), on the particle.

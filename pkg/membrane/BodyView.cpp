@@ -168,6 +168,8 @@ void BodyView::grip(const HexMembrane& membrane, const vector<std::pair<int, Vec
 
 hexmembrane::SphereRows BodyView::grains(const HexMembrane& membrane)
 {
+	if (grainsBeside == &membrane) return {grainPlaces.data(), grainIds.data(), static_cast<int>(grainIds.size())};
+	grainsBeside = &membrane;
 	vector<char> own(scene.bodies->size(), 0);
 	for (Body::id_t id : membrane.ids) own.at(id) = 1;
 	grainPlaces.clear();
@@ -178,7 +180,7 @@ hexmembrane::SphereRows BodyView::grains(const HexMembrane& membrane)
 		grainPlaces.push_back({body->state->pos, sphere->radius});
 		grainIds.push_back(body->getId());
 	}
-	return {grainPlaces.data(), grainIds.data(), static_cast<int>(grainIds.size())};
+	return grains(membrane);
 }
 
 void BodyView::addForce(int grain, const Vector3r& force)

@@ -32,6 +32,7 @@ private:
 	const HexMembrane* rowsOf = nullptr;
 	vector<hexmembrane::Place> grainPlaces;
 	vector<Body::id_t> grainIds;
+	const HexMembrane* grainsBeside = nullptr; //!< membrane that they are not of
 };
 
 } // namespace yade

@@ -46,7 +46,7 @@ void MembraneFacetContact::compute(StepView& view)
 {
 	const hexmembrane::PaddedRings& x = view.positions(*membrane);
 	named("MembraneFacetContact", {{"points", "grains"}, {"low", "grains"}, {"high", "grains"}},
-	      [&] { kernel->compute(x, [&] { return view.grains(*membrane); }); });
+	      [&] { kernel->compute(x, [&] { return view.grains(*membrane); }, view.travel()); });
 }
 
 // Triangles beside a broken bond carry nothing any more. What they stored is set free as that of the bond is.

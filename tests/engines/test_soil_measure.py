@@ -80,7 +80,7 @@ def test_isTheSumOverTheContacts(O, tier, lateral):
 
 
 #: Facets so thick and soft that grains touch them in a sheet that is not stretched.
-THICK = dict(offset=0.8 * SMALL["particleRadius"], kn=300.0)
+THICK = dict(offset=0.88 * SMALL["particleRadius"], kn=300.0)
 
 
 @pytest.mark.parametrize("lateral, facets", (("membrane", None), ("membrane", THICK), ("wall", None)))
@@ -88,7 +88,7 @@ def test_boundaryAndContactsDifferByWhatInertiaTakes(O, tier, lateral, facets):
 	"""V (contacts - boundary) = sum over the grains of resultant (x) centre, exactly."""
 	made = build(tier, lateral=lateral, facets=facets, **SMALL)
 	measure = measureOf(made)
-	run(40)
+	run(300 if facets else 40)  # grains sink into the hollows
 	found = measure.stress()
 	grains = list(range(SMALL["grains"]))
 	x, f = BodyArrays.positions(grains), BodyArrays.forces(grains)
@@ -96,7 +96,7 @@ def test_boundaryAndContactsDifferByWhatInertiaTakes(O, tier, lateral, facets):
 	apart = found["volume"] * (found["whole"] - found["boundary"])
 	expected = np.einsum("gi,gj->ij", f, x)
 	if facets:
-		assert len(made["facets"].grains) > 10
+		assert len(made["facets"].grains) > 3
 	assert np.abs(expected).max() > 1e-9
 	assert np.abs(apart - expected).max() < 1e-9 * found["volume"] * np.abs(found["whole"]).max()
 

@@ -77,9 +77,8 @@ def test_facetsArrive(O, built, tier):
 	facets = engines["MembraneFacetContact"]
 	assert scene.lateralBoundary.facets is facets and facets.bonds is engines["MembraneBonds"]
 	scene.setPressure(1e4)
-	facets.offset = 0.85 * facets.membrane.sphereRadius
-	O.step()
-	O.step()
+	facets.offset = 0.89 * facets.membrane.sphereRadius
+	O.run(300, True)
 	assert facets.grains
 	assert scene.criticalTimeStep() <= 1.01 * facets.criticalTimeStep()
 	tracked = dict(O.energy.items())

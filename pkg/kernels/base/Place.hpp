@@ -18,4 +18,11 @@ struct SphereRows {
 	int count = 0;
 };
 
+/// How far spheres have gone at most: none by more than the difference of two values of `way` (m), while `order` is the same and not negative, and with it
+/// the order of their rows.
+struct Travel {
+	long order = -1; ///< -1: not known
+	double way = 0;
+};
+
 } // namespace hexmembrane

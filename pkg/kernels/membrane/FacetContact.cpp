@@ -16,6 +16,8 @@ namespace {
 
 /// Share of the particles' radius by which contacts may overlap before a triangle acts.
 constexpr double softness = 0.1;
+/// Share of the skin that may have been gone where it is looked at. What is left of half a skin is for steps in which nobody looks.
+constexpr double measured = 0.25;
 
 /// Weights of the point of a triangle that is nearest to c. Exactly 0 for corners that it does not depend on.
 std::array<double, 3> nearestWeights(const Vec3& c, const std::array<Vec3, 3>& corner)
@@ -61,7 +63,7 @@ double FacetContact::actingLength(double radius, double offset, double grain)
 }
 
 FacetContact::FacetContact(const HexStencil& s, double r, double offset, double stiffness)
-    : force(s.perRing, s.rings), stencil(s), radius(r), h(offset), kn(stiffness), skin(0.1 * r), trianglesOf(s.particles())
+    : force(s.perRing, s.rings), stencil(s), radius(r), h(offset), kn(stiffness), skin(0.15 * r), trianglesOf(s.particles())
 {
 	requirePositive("radius", r, "m");
 	requirePositive("offset", offset, "m");
@@ -78,6 +80,7 @@ void FacetContact::setBroken(const std::vector<int>& broken)
 {
 	std::fill(torn.begin(), torn.end(), 0);
 	listed = {}; // lists leave torn triangles out
+	sure = {};
 	if (broken.empty()) return;
 	if (int(broken.size()) != stencil.bondCount()) reject("broken", int(broken.size()), "does not fit the tube", "one for each bond");
 	const auto bonds = bondList(stencil);
@@ -92,6 +95,14 @@ double FacetContact::longestSquared(const Triangle& t) const
 {
 	const Vec3 a = at(t[0]), b = at(t[1]), c = at(t[2]);
 	return std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+}
+
+/// Whether a grain reaches the plane of a triangle: nearly all that are near do not, and this spares the rest.
+bool FacetContact::planeReaches(const Triangle& t, const Place& grain) const
+{
+	const Vec3 a = at(t[0]), normal = (at(t[1]) - a).cross(at(t[2]) - a);
+	const double along = normal.dot(grain.centre - a), reach = grain.radius + h;
+	return along * along <= reach * reach * normal.squaredNorm();
 }
 
 Vec3 FacetContact::inwards(const Triangle& t) const
@@ -161,7 +172,7 @@ bool FacetContact::grainsHold(const SphereRows& rows) const
 	// grains that have changed places are further apart than this
 	double most = 0;
 	for (int i = 0; i < rows.count; ++i) most = std::max(most, (rows.places[i].centre - listedGrains[i]).squaredNorm());
-	return most < 0.25 * skin * skin;
+	return most < measured * measured * skin * skin;
 }
 
 void FacetContact::makeLists(const SphereRows& rows)
@@ -205,7 +216,20 @@ void FacetContact::makeLists(const SphereRows& rows)
 	std::sort(near.begin(), near.end(), [](const Near& a, const Near& b) { return std::array{a.grain, a.triangle} < std::array{b.grain, b.triangle}; });
 }
 
-void FacetContact::compute(const PaddedRings& position, const std::function<SphereRows()>& grains)
+void FacetContact::keepLists(const std::function<SphereRows()>& grains, const Travel& travel)
+{
+	const double gone = travel.way - sure.way;
+	if (travel.order >= 0 && travel.order == sure.order && gone >= 0 && gone < 0.5 * skin) return;
+	const bool sheetHolds = nearerThan(measured * skin, stencil, *x, listed);
+	sure = {travel.order, travel.way - measured * skin};
+	if (sheetHolds && !anyLong) return;
+	const SphereRows rows = grains();
+	if (sheetHolds && grainsHold(rows)) return;
+	makeLists(rows);
+	sure.way = travel.way;
+}
+
+void FacetContact::compute(const PaddedRings& position, const std::function<SphereRows()>& grains, const Travel& travel)
 {
 	x = &position;
 	const int n = stencil.perRing;
@@ -214,16 +238,16 @@ void FacetContact::compute(const PaddedRings& position, const std::function<Sphe
 	contacts.clear();
 	first = stencil.rings;
 	last = -1;
-	const bool sheetHolds = nearerThan(0.5 * skin, stencil, position, listed);
-	if (sheetHolds && !anyLong) return;
+	keepLists(grains, travel);
+	if (near.empty()) return;
 	const SphereRows rows = grains();
-	if (!sheetHolds || !grainsHold(rows)) makeLists(rows);
 	for (std::size_t p = 0; p < near.size();) {
 		const int grain = near[p].grain;
 		Foot nearest;
 		for (; p < near.size() && near[p].grain == grain; ++p) {
-			if (!acts(near[p].triangle)) continue;
-			const Foot foot = footOn(near[p].triangle, rows.places[grain].centre);
+			const int t = near[p].triangle;
+			if (!planeReaches(triangles[t], rows.places[grain]) || !acts(t)) continue;
+			const Foot foot = footOn(t, rows.places[grain].centre);
 			if (foot.square < nearest.square) nearest = foot;
 		}
 		if (nearest.triangle >= 0) touch(grain, rows, nearest);

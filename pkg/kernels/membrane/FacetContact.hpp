@@ -18,7 +18,8 @@ namespace hexmembrane {
 /// and the grain is pushed back inwards. Further out a grain is outside, and the sheet keeps it there: it has leaked, or was put there.
 ///
 /// A triangle acts while its longest edge is above actingLength(), and beside no broken bond. Lists hold what is nearer than a skin and are made anew before
-/// anything has moved half of it. Contacts are summed in the order of the grains' ids: bits depend on the places alone, not on when the lists were made.
+/// anything has moved half of it; how far things have gone is looked at when `travel` leaves room for it. Contacts are summed in the order of the grains' ids:
+/// bits depend on the places alone, not on when the lists were made.
 class FacetContact {
 public:
 	FacetContact() = default;
@@ -30,7 +31,7 @@ public:
 
 	/// Forces (N) at these positions, whose rows are wrapped. `grains` is asked when lists are made, and while a triangle is long enough to act.
 	/// \throws FieldError for a grain that is nowhere
-	void compute(const PaddedRings& position, const std::function<SphereRows()>& grains);
+	void compute(const PaddedRings& position, const std::function<SphereRows()>& grains, const Travel& travel = {});
 
 	/// A grain that touches, at the last compute().
 	struct Contact {
@@ -72,12 +73,14 @@ private:
 
 	Vec3 at(int particle) const { return x->get(particle / stencil.perRing, particle % stencil.perRing); }
 	double longestSquared(const Triangle& t) const;
+	bool planeReaches(const Triangle& t, const Place& grain) const;
 	bool acts(int triangle) const { return !torn[triangle] && longestSquared(triangles[triangle]) > limit * limit; }
 	Vec3 inwards(const Triangle& t) const;
 	Foot footOn(int triangle, const Vec3& centre) const;
 	bool surrounded(const Foot& foot, Vec3& normal) const;
 	void touch(int grain, const SphereRows& rows, const Foot& foot);
 	bool grainsHold(const SphereRows& rows) const;
+	void keepLists(const std::function<SphereRows()>& grains, const Travel& travel);
 	void makeLists(const SphereRows& rows);
 
 	HexStencil stencil;
@@ -89,6 +92,7 @@ private:
 	const PaddedRings* x = nullptr; ///< of compute(), while it runs
 	PaddedRings listed;             ///< positions at which the lists were made
 	std::vector<Vec3> listedGrains; ///< likewise; empty while no triangle is long enough to act
+	Travel sure;                    ///< nothing has moved half a skin before half a skin has been travelled from here
 	double limit = 0;               ///< length from which on triangles act
 	bool anyLong = false;           ///< whether there are such triangles, or may be before the lists are made anew
 	std::vector<Near> near;         ///< by grain
