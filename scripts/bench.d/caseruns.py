@@ -26,7 +26,7 @@ TEXTS = ("*.txt", "*.yaml", "checkpoint.json")
 class Watched(stages.TriaxialTest):
 	"""A test that notes the membrane's largest velocity at each row, lets a case drive the shear, and kills its process after a row of the shear."""
 
-	case, killAfter, watched = None, None, None
+	case, killAfter, kill, watched = None, None, os._exit, None
 
 	def row(self):
 		row = super().row()
@@ -35,7 +35,7 @@ class Watched(stages.TriaxialTest):
 		scale = math.sqrt(self.config.consolidation.pressure / self.config.membrane.density)
 		self.watched["membrane speed"] = max(self.watched.get("membrane speed", 0.0), fastest / scale)
 		if self.stage == "shear" and self.rowCount == self.killAfter:
-			os._exit(9)
+			self.kill(9)
 		return row
 
 	def shear(self):
@@ -49,10 +49,13 @@ class Watched(stages.TriaxialTest):
 		return None
 
 
-def whole(case, config, out, resume=False, killAfter=None):
-	"""A whole test in the folder ``out``: (outcome, message, what it printed, measurements)."""
+def whole(case, config, out, resume=False, killAfter=None, kill=os._exit):
+	"""A whole test in the folder ``out``: (outcome, message, what it printed, measurements).
+
+	:param killAfter: the row of the shear after which ``kill(9)`` is called.
+	"""
 	seen, printed = {}, io.StringIO()
-	attributes = {"case": case, "killAfter": killAfter, "watched": seen}
+	attributes = {"case": case, "killAfter": killAfter, "kill": staticmethod(kill), "watched": seen}
 	outcome, message = "done", ""
 	with unittest.mock.patch.object(stages, "TriaxialTest", type("WatchedCase", (Watched,), attributes)), contextlib.redirect_stdout(printed):
 		O.reset()

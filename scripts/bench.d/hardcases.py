@@ -23,7 +23,7 @@ FEW = {
 	"output": {"records": 40, "vtkEvery": 20, "checkpointEvery": 10},
 }
 #: What a short form has instead.
-FEWER = {"specimen": {"grains": 150}, "shear": {"strain": 0.03, "rampStrain": 0.002}, "output": {"records": 12, "vtkEvery": 6, "checkpointEvery": 4}}
+FEWER = {"specimen": {"grains": 150, "height": 0.04, "porosity": 0.46}, "shear": {"strain": 0.03, "rampStrain": 0.002}, "output": {"records": 12, "vtkEvery": 6, "checkpointEvery": 4}}
 #: Bounds of every test that is done; measurements are defined in caseruns.py.
 USUAL = {
 	"start axial": (0, 0.01),
@@ -131,12 +131,14 @@ CASES = [
 	Case("10 MPa, emod as it is", {"consolidation": {"pressure": 1e7}, "membrane": {"young": 1.2e8}, "shear": {"velocity": 1.0}},
 		expect="done or stopped", warns="below 300 the grains are soft", bounds=anySoil()),
 	Case("pressure at once", {"consolidation": {"rampTime": 1e-9}}),
+	Case("pressure at once, a quarter of the step", {"consolidation": {"rampTime": 1e-9}, "numerics": {"safety": 0.125}}),
 	Case("loose, collapses", {"specimen": {"porosity": 0.47, "friction": 0.05}, "consolidation": {"friction": 0.5}},
 		bounds=anySoil(**{"largest q/sigma3": (0.0, 1.2)})),
 	Case("packed under stress", {"specimen": {"porosity": 0.46, "stress": 1e3, "rollingFriction": 0.1, "packingRollingFriction": 0.1}}),
 	Case("membrane ten times softer", sheet(60), warns="may fold between the grains", bounds=anySoil()),
 	Case("membrane ten times stiffer", sheet(6000), bounds={"largest q/sigma3": (0.8, 3)}),
-	Case("R over r 2", {"membrane": {"sizeRatio": 2.0}}, expect="refused", says="particleRadius"),
+	Case("R over r 2", {"membrane": {"sizeRatio": 2.0}}),
+	Case("R over r 7", {"membrane": {"sizeRatio": 7.0}}, expect="refused", says="HexMembrane.particleRadius"),
 	Case("R over r 0.2", {"membrane": {"sizeRatio": 0.2}, "shear": {"strain": 0.02}}),
 	Case("slender", {"specimen": {"radius": 0.01, "height": 0.08}}),
 	Case("flat", {"specimen": {"radius": 0.03, "height": 0.03}}),
@@ -144,18 +146,18 @@ CASES = [
 	Case("twenty cycles", drive=casescenes.cycles),
 	Case("extension", drive=casescenes.extension, bounds=anySoil(**{"smallest q/sigma3": (-1.0, -0.3), "strain": (-0.06, -0.05)})),
 	Case("torn membrane", {"membrane": {"tensileStrength": 0.3}}, expect="stopped", says="torn"),
-	Case("frictionless grains", {"specimen": {"friction": 0.0}}, bounds=anySoil(**{"largest q/sigma3": (0.0, 0.8)})),
+	Case("frictionless grains", {"specimen": {"friction": 0.0}, "consolidation": {"friction": 0.0}}, bounds=anySoil(**{"largest q/sigma3": (0.0, 0.8)})),
 	Case("sizes 1 to 10", wide),
 	Case("0.9 of the critical step", stepOf(0.9), expect="done or stopped", says="numerics.dt"),
 	Case("1.1 of the critical step", stepOf(1.1), expect="refused", says="numerics.dt"),
 	Case("3 times the critical step", drive=casescenes.tooLong, expect="stopped", says="time step"),
 	Case("1e6 steps at rest", drive=casescenes.rest(1000000), bounds={"drift of porosity": (0, 1e-5), "drift of pressure": (0, 1e-3), "energy": (0, 1e-3)}),
 	Case("a script tilts the top platen", drive=casescenes.tilting),
-	*(Case(f"tilted platen, {tier}", scene=casescenes.tilted(tier), bounds={"force": (0, 1e-9), "turning force": (0, 1e-9), "driven tilt": (0, 1e-9)})
+	*(Case(f"tilted platen, {tier}", scene=casescenes.tilted(tier), bounds={"force": (0, 1e-9), "turning force": (0, 1e-9), "driven tilt": (0, 1e-9), "turned": (0, 1e-9)})
 		for tier in ("reference", "compact")),
 	*(Case(f"collisions of pairs, {tier}", scene=casescenes.pairs(tier), bounds={"against central differences": (0, 1e-9)})
 		for tier in ("reference", "compact")),
-	Case("frictionless gas", scene=casescenes.gas, bounds={"growth at 0.2": (0.99, 1.01), "growth at 0.5": (0.9, 1.1)}),
+	Case("frictionless gas", scene=casescenes.gas, bounds={"growth at 0.2": (0.98, 1.05), "growth at 0.8": (2, math.inf)}),
 ]  # fmt: skip
 
 
