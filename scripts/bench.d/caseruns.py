@@ -142,6 +142,10 @@ def judge(case, outcome, message, printed, seen):
 		odd.append(f"is {outcome}, expected {case.expect}")
 	if outcome != "done" and case.says not in message:
 		odd.append(f"the message does not say '{case.says}'")
+	if outcome != "done" and "fix: " not in message:
+		odd.append("the message names no cause and no fix")
+	if "see its messages above" in message:
+		odd.append("the message does not pass on what YADE said")
 	if case.warns and case.warns not in printed:
 		odd.append(f"does not warn of '{case.warns}'")
 	for name, (low, high) in case.allBounds().items():
