@@ -43,7 +43,7 @@ def one(name, folder):
 		if code:
 			return name, "FAILS", f"exit code {code}", case.expect, f"see {out.name}.log", "", ""
 		found = json.loads((out / "case.json").read_text())
-		if found["outcome"] == "done" and not case.scene:
+		if found["outcome"] == "done" and not case.scene and case.again:
 			again = out / "killed"
 			child([folder, "--one", name, "--killed"], folder / f"{out.name}.log")
 			child([folder, "--one", name, "--resumed"], folder / f"{out.name}.log")
