@@ -14,8 +14,9 @@ import casescenes  # noqa: E402
 from hardcases import CASES, Case, named  # noqa: E402
 
 SHORT = (
-	"pressure at once", "twenty cycles", "extension", "torn membrane", "frictionless grains", "R over r 2", "1.1 of the critical step", "3 times the critical step",
-	"similar tests", "tilted platen, reference", "tilted platen, compact", "collisions of pairs, reference", "collisions of pairs, compact", "frictionless gas",
+	"pressure at once", "twenty cycles", "extension", "torn membrane", "frictionless grains", "R over r 2", "1.1 of the critical step",
+	"3 times the critical step", "similar tests", "tilted platen, reference", "tilted platen, compact", "collisions of pairs, reference",
+	"collisions of pairs, compact", "frictionless gas",
 )  # fmt: skip
 REST = Case("at rest", drive=casescenes.rest(20000), bounds=named("1e6 steps at rest").bounds)
 
