@@ -82,6 +82,7 @@ def measured(out, seen):
 	def most(values):
 		return float(numpy.abs(values[shear]).max())
 
+	late = shear[len(shear) // 2 :]
 	transmitted = table["sigma3_transmitted_group3"]
 	boundary = max(most((table[f"boundary_{a}"] - table[f"soil_{a}"]) / table["soil_axial"]) for a in ("axial", "radial"))
 	return {
@@ -93,13 +94,13 @@ def measured(out, seen):
 		"energy, consolidation": float(abs(table["energy_error"][first - 1])),
 		"largest q/sigma3": float(table["q"][shear].max() / target),
 		"smallest q/sigma3": float(table["q"][shear].min() / target),
-		"largest soil stress/sigma3": max(float(table[f"soil_{a}"][shear].max()) for a in ("axial", "radial")) / target,
-		"smallest soil stress/sigma3": min(float(table[f"soil_{a}"][shear].min()) for a in ("axial", "radial")) / target,
+		"largest soil stress/sigma3": float(max(table[f"soil_{a}"][shear].max() for a in ("axial", "radial")) / target),
+		"smallest soil stress/sigma3": float(min(table[f"soil_{a}"][shear].min() for a in ("axial", "radial")) / target),
 		"broken bonds": float(table["bonds_broken"][-1]),
 		"strain": float(table["axial_strain"][-1]),
 		"porosity at the start": float(table["porosity"][first]),
-		"drift of porosity": float(numpy.ptp(table["porosity"][shear])),
-		"drift of pressure": float(numpy.ptp(transmitted[shear])) / target,
+		"drift of porosity": float(numpy.ptp(table["porosity"][late])),
+		"drift of pressure": float(numpy.ptp(transmitted[late]) / target),
 		"steps": float(table["step"][-1]),
 	}
 

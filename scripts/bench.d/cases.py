@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What becomes of the hard cases of hardcases.py, each a process of its own, against what is expected of each.
 
-	cases.py FOLDER [--only TEXT] [--processes N]
+	cases.py FOLDER [--only TEXT] [--processes N] [--once]
 
 FOLDER keeps one folder a case, cases.csv and cases.md. A case whose folder has a result is not run again. A test that was done is run again,
-killed in the middle of its shear and resumed: its rows must be the same. The exit code is 1 when a case is not as expected.
+killed in the middle of its shear and resumed: its rows must be the same; not with --once. The exit code is 1 when a case is not as expected.
 """
 
 import argparse
@@ -33,7 +33,7 @@ def child(arguments, log):
 		return subprocess.run([*program, *map(str, arguments)], stdout=file, stderr=file, env={**os.environ, "OMP_NUM_THREADS": "1"}).returncode
 
 
-def one(name, folder):
+def one(name, folder, once=False):
 	"""A case's row of the table."""
 	case, out = named(name), survey.place(name, folder)
 	result = folder / f"{out.name}.json"
@@ -43,7 +43,7 @@ def one(name, folder):
 		if code:
 			return name, "FAILS", f"exit code {code}", case.expect, f"see {out.name}.log", "", ""
 		found = json.loads((out / "case.json").read_text())
-		if found["outcome"] == "done" and not case.scene and case.again:
+		if found["outcome"] == "done" and not case.scene and case.again and not once:
 			again = out / "killed"
 			child([folder, "--one", name, "--killed"], folder / f"{out.name}.log")
 			child([folder, "--one", name, "--resumed"], folder / f"{out.name}.log")
@@ -79,6 +79,7 @@ def keep(folder, rows):
 def main(argv):
 	parser = argparse.ArgumentParser(prog="cases.py", description="What becomes of the hard cases.")
 	survey.addOptions(parser)
+	parser.add_argument("--once", action="store_true", help="no test is killed and resumed")
 	parser.add_argument("--one", help=argparse.SUPPRESS)
 	parser.add_argument("--killed", action="store_true", help=argparse.SUPPRESS)
 	parser.add_argument("--resumed", action="store_true", help=argparse.SUPPRESS)
@@ -86,8 +87,8 @@ def main(argv):
 	if arguments.one:
 		asChild(named(arguments.one), arguments.folder, arguments)
 		return 0
-	names = [case.name for case in CASES if arguments.only in case.name]
-	rows = survey.runAll(names, lambda name: one(name, arguments.folder), arguments.folder, arguments.processes, lambda rows: keep(arguments.folder, rows))
+	names = [case.name for case in CASES if any(text in case.name for text in arguments.only.split("|"))]
+	rows = survey.runAll(names, lambda name: one(name, arguments.folder, arguments.once), arguments.folder, arguments.processes, lambda rows: keep(arguments.folder, rows))
 	failing = [name for name, row in rows.items() if row[1] == "FAILS"]
 	print(f"{len(rows) - len(failing)} as expected, {len(failing)} not" + (f": {', '.join(failing)}" if failing else ""))
 	return 1 if failing else 0
