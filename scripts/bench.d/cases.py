@@ -3,6 +3,7 @@
 
 	cases.py FOLDER [--only TEXT] [--processes N] [--once]
 
+--only takes several texts with | between.
 FOLDER keeps one folder a case, cases.csv and cases.md. A case whose folder has a result is not run again. A test that was done is run again,
 killed in the middle of its shear and resumed: its rows must be the same; not with --once. The exit code is 1 when a case is not as expected.
 """
