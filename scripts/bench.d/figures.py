@@ -15,6 +15,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plot  # noqa: E402
 import table  # noqa: E402
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter  # noqa: E402
 
 #: Quantity -> (file, what an error of 1 is called).
 PICTURES = {
@@ -38,9 +39,10 @@ def read(path):
 
 
 def picture(rows, quantity, unit, path):
-	"""Draw the knobs that a quantity has rows of; False when there are none."""
+	"""Draw the knobs that a quantity has two levels or more of; False when there are none."""
 	of = [row for row in rows if row["quantity"] == quantity and not math.isnan(row["time"])]
-	knobs = [name for name in dict.fromkeys(row["knob"] for row in of) if name != "packings"]
+	names = [row["knob"] for row in of]
+	knobs = [name for name in dict.fromkeys(names) if names.count(name) > 1]
 	if not knobs:
 		return False
 	band = 100 * next((row["scatter"] for row in of if row["knob"] == "packings"), math.nan)
@@ -58,9 +60,13 @@ def picture(rows, quantity, unit, path):
 		for row in levels:
 			panel.annotate(row["value"], (row["time"], 100 * row["mean"]), xytext=(4, 4), textcoords="offset points", fontsize=8)
 		panel.set(title=knob, xscale="log")
+		panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+		panel.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+		panel.xaxis.set_minor_formatter(NullFormatter())
 		panel.margins(x=0.15)
+	figure.suptitle(f"{quantity}: mean difference from the reference and its 95 % interval; band: scatter between packings")
 	figure.supxlabel("wall clock over that of the base test")
-	figure.supylabel(f"{quantity}: difference from the reference [{unit}], mean and its 95 % interval; band: scatter between packings")
+	figure.supylabel(f"difference [{unit}]")
 	figure.savefig(path, dpi=110)
 	plot.close(figure)
 	return True
