@@ -3,16 +3,18 @@
 
 	accuracy.py FOLDER [--packings N] [--only TEXT] [--processes N] [--runs N] [--slow] [--list]
 	accuracy.py figures FOLDER
+	accuracy.py publish FOLDER
 
 FOLDER keeps one folder a run, runs.csv with one row a run, and curves.csv with one row a knob, level and quantity (curves.py). A run that has a
 result is not run again, so an interrupted study goes on. Base runs come first, then knob by knob as in knobs.py, the longest runs of each first.
 
 Columns of curves.csv: mean, signed, of the paired differences from the reference (relative to its value for stresses, absolute for strains and for
 start stresses over their target); scatter, their standard deviation over the packings; half_width of the mean's 95 % interval; steps and time relative
-to the base run. Numbers of grains have no packing in common: there mean is the difference of the means, scatter and half_width are the level's own.
+to the base run; fit and fit_half_width, the same as mean and half_width from all levels at once (fits.py). Numbers of grains have no packing in common: there mean is the difference of the means, scatter and half_width are the level's own.
 """
 
 import argparse
+import csv
 import hashlib
 import math
 import pathlib
@@ -22,10 +24,11 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 
 import curves  # noqa: E402
+import fits  # noqa: E402
 import knobs  # noqa: E402
 import survey  # noqa: E402
+import table  # noqa: E402
 from hexmembrane.output import records  # noqa: E402
-from table import write  # noqa: E402
 
 FIRST_SEED = 7
 #: Processor minutes of a base run (AMD EPYC with 2 processors shared with other work, 26 November 2026, 0c227f6).
@@ -80,12 +83,12 @@ class Study:
 		out = survey.place(name, self.folder)
 		if not (out / "records.csv").is_file():
 			return None
-		table = records.read(out / "records.csv")
-		if not len(table["step"]):
+		read = records.read(out / "records.csv")
+		if not len(read["step"]):
 			return None
 		x = re.search(pattern, (out / "said.txt").read_text()) if pattern else None
 		digest = hashlib.sha1((out / "packing.txt").read_bytes()).hexdigest()[:12]
-		return curves.Run(seed, digest, curves.quantities(table), table["step"][-1], table["elapsed"][-1], float(x[1]) if x else math.nan)
+		return curves.Run(seed, digest, curves.quantities(read), read["step"][-1], read["elapsed"][-1], float(x[1]) if x else math.nan)
 
 	def hasEnded(self, name):
 		"""Whether a run has a result, whatever it is."""
@@ -101,10 +104,25 @@ class Study:
 
 	def tell(self):
 		"""Write curves.csv from all runs that there are, and print the orders; its rows."""
-		rows = curves.curves(self.knobs, self.whole())
-		write(str(self.folder / "curves.csv"), curves.HEADER, [[f"{cell:.6g}" if isinstance(cell, float) else cell for cell in row] for row in rows])
+		runs = self.whole()
+		rows = curves.curves(self.knobs, runs)
 		print(*curves.orders(self.knobs, rows), sep="\n")
+		rows = [(*row, *more) for row, more in zip(rows, fits.columns(self.knobs, runs, rows))]
+		table.write(str(self.folder / "curves.csv"), (*curves.HEADER, *fits.HEADER), [[f"{cell:.6g}" if isinstance(cell, float) else cell for cell in row] for row in rows])
 		return rows
+
+
+def publish(folder):
+	"""Make the study in a folder the one that tests' error budgets are made from: the rows of curves.csv that they use, in the package."""
+	from hexmembrane.scene import accuracy
+
+	used = {*(knob.name for knob in accuracy.KNOBS), "skin", "packings"}
+	rows = [row for row in table.read(folder / "curves.csv") if row["knob"] in used and row["quantity"] in accuracy.QUANTITIES]
+	with open(accuracy.FILE, "w", newline="", encoding="utf-8") as file:
+		writer = csv.DictWriter(file, rows[0], lineterminator="\n")
+		writer.writeheader()
+		writer.writerows(rows)
+	print(f"written: {accuracy.FILE}")
 
 
 def _arguments(argv):
@@ -123,6 +141,8 @@ def main(argv):
 		import figures
 
 		return figures.main(argv[1:])
+	if argv[:1] == ["publish"]:
+		return publish(pathlib.Path(argv[1]))
 	arguments = _arguments(argv)
 	study = Study(arguments.folder, arguments.packings, arguments.slow, arguments.short)
 	wanted = [name for name in study.jobs if arguments.only in name][: arguments.runs]
@@ -131,9 +151,9 @@ def main(argv):
 		print(*(f"{name}: {cost:.2g}" for name, cost in zip(wanted, costs)), sep="\n")
 		print(f"{len(wanted)} runs, {sum(costs):.0f} times a base run, about {MINUTES * sum(costs):.0f} processor minutes")
 		return None
-	csv = str(arguments.folder / "runs.csv")
+	path = str(arguments.folder / "runs.csv")
 	told = [name for name in study.jobs if name in wanted or study.hasEnded(name)]
-	survey.runAll(told, study.run, arguments.folder, arguments.processes, lambda rows: write(csv, HEADER, rows))
+	survey.runAll(told, study.run, arguments.folder, arguments.processes, lambda rows: table.write(path, HEADER, rows))
 	study.tell()
 	return None
 

@@ -22,7 +22,7 @@ SEEDS = range(7, 17)
 VELOCITIES, STRETCH = (0.015, 0.03, 0.12), (150, 300, 450, 2400)
 HEADER = (
 	"run", "outcome", "axial strain [%]", "start: axial [kPa]", "radial [kPa]", "middle axial [kPa]", "middle radial [kPa]", "largest q [kPa]",
-	"boundary against contacts [% of axial]", "lost bonds", "time [s]", "message",
+	"boundary and inertia against contacts [% of axial]", "inertia [% of axial]", "lost bonds", "time [s]", "message",
 )  # fmt: skip
 
 
@@ -62,17 +62,20 @@ def run(name, change, folder):
 def row(name, code, message, out):
 	outcome = survey.outcome(code)
 	if not (out / "records.csv").is_file():
-		return name, outcome, *[""] * 9, message
+		return name, outcome, *[""] * 10, message
 	table = records.read(out / "records.csv")
 	shear = [i for i, stage in enumerate(table["stage"]) if stage == "shear"]
 	if not shear:
-		return name, outcome, *[""] * 9, message
+		return name, outcome, *[""] * 10, message
 	first = shear[0]
 	start = [f"{1e-3 * table[key][first]:.2f}" for key in ("soil_axial", "soil_radial", "soil_axial_middle", "soil_radial_middle")]
-	apart = max(abs(table[f"boundary_{a}"][i] - table[f"soil_{a}"][i]) / table["soil_axial"][i] for a in ("axial", "radial") for i in shear)
+	apart, inertia = (
+		max(abs(sum(sign * table[f"{name}_{a}"][i] for name, sign in parts)) / table["soil_axial"][i] for a in ("axial", "radial") for i in shear)
+		for parts in ((("boundary", 1), ("inertia", 1), ("soil", -1)), (("inertia", 1),))
+	)
 	most = max(table["q"][i] for i in shear)
 	return (
-		name, outcome, f"{100 * table['axial_strain'][-1]:.2f}", *start, f"{1e-3 * most:.1f}", f"{100 * apart:.2f}",
+		name, outcome, f"{100 * table['axial_strain'][-1]:.2f}", *start, f"{1e-3 * most:.1f}", f"{100 * apart:.4f}", f"{100 * inertia:.2f}",
 		int(table["bonds_broken"][-1]), f"{table['elapsed'][-1]:.0f}", message,
 	)  # fmt: skip
 

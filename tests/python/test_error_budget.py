@@ -12,7 +12,7 @@ from hexmembrane.configuration import Config, ConfigError
 from hexmembrane.scene import accuracy, specimen
 
 QUICK = pathlib.Path(__file__).resolve().parents[2] / "examples" / "quick.yaml"
-HEADER = "knob,value,x,quantity,mean,scatter,half_width,packings,steps,time\n"
+HEADER = "knob,value,x,quantity,fit,scatter,fit_half_width,packings,steps,time\n"
 # error of the peak of q, error of the volumetric strain, time at (x, ...) of each knob
 LEVELS = {
 	"velocity": {1e-4: (0, 0, 8), 1e-3: (0.01, 1e-3, 1), 1e-2: (-0.05, 4e-3, 0.1)},

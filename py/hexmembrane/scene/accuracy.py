@@ -26,7 +26,8 @@ from hexmembrane.scene import timestep
 PEAK, VOLUME = QUANTITIES = "peak q", "volumetric strain at 15 %"
 #: Grains of the packings on which the curves were measured.
 GRAINS = 1200
-_FILE = pathlib.Path(__file__).with_name("accuracy.csv")
+#: The measurements: ``scripts/bench accuracy publish``.
+FILE = pathlib.Path(__file__).with_name("accuracy.csv")
 #: Parts that the way between two measured levels is divided into when settings are chosen.
 _BETWEEN = 2
 
@@ -107,7 +108,7 @@ class Measured:
 	packings: dict
 
 	@classmethod
-	def of(cls, path=_FILE):
+	def of(cls, path=FILE):
 		"""The measurements in ``curves.csv`` of ``scripts/bench accuracy``. Runs that differ in the lists' skin alone differ by rounding: they tell the scatter."""
 		with open(path, encoding="utf-8") as file:
 			rows = [row for row in csv.DictReader(file) if row["quantity"] in QUANTITIES]
@@ -120,7 +121,7 @@ class Measured:
 		for knob in {row["knob"] for row in rows} & {knob.name for knob in KNOBS}:
 			x = column("x", knob, PEAK)
 			rising = x.argsort()
-			mean, half = ({name: column(what, knob, name)[rising] for name in QUANTITIES} for what in ("mean", "half_width"))
+			mean, half = ({name: column(what, knob, name)[rising] for name in QUANTITIES} for what in ("fit", "fit_half_width"))
 			curves[knob] = Curve(x[rising], mean, half, column("time", knob, PEAK)[rising])
 		return cls(curves, scatter, packings)
 
