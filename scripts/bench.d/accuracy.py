@@ -4,6 +4,7 @@
 	accuracy.py FOLDER [--packings N] [--only TEXT] [--processes N] [--runs N] [--slow] [--list]
 	accuracy.py figures FOLDER
 	accuracy.py publish FOLDER
+	accuracy.py prove FOLDER [--processes N]
 
 FOLDER keeps one folder a run, runs.csv with one row a run, and curves.csv with one row a knob, level and quantity (curves.py). A run that has a
 result is not run again, so an interrupted study goes on. Base runs come first, then knob by knob as in knobs.py, the longest runs of each first.
@@ -141,6 +142,10 @@ def main(argv):
 		import figures
 
 		return figures.main(argv[1:])
+	if argv[:1] == ["prove"]:
+		import proof
+
+		return proof.main(argv[1:])
 	if argv[:1] == ["publish"]:
 		return publish(pathlib.Path(argv[1]))
 	arguments = _arguments(argv)
