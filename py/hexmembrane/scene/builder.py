@@ -130,7 +130,7 @@ def build(config, packing, say=print):
 	level = timestep.stiffnessLevel(config.specimen.emod, config.consolidation.pressure)
 	say(
 		f"grains: {len(packing.radii)}, kn/(p d) = {level:.4g} at {1e-3 * config.consolidation.pressure:g} kPa"
-		+ ("" if level >= 300 else "; WARNING: below 300 the grains are soft and overlaps are not small; fix: raise specimen.emod")
+		+ ("" if level >= 300 else "; WARNING: below 300 the grains are soft and overlaps are not small, see the error budget; fix: raise specimen.emod")
 	)
 	return scene
 
