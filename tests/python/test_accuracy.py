@@ -137,3 +137,73 @@ def test_shortForm(part, tmp_path, capsys, monkeypatch):
 	capsys.readouterr()
 	accuracy.main([str(tmp_path), "--short", "--packings", "2", "--list"])
 	assert "6 runs, " in capsys.readouterr().out
+
+
+def test_fitTellsMoreThanALevel(part, monkeypatch):
+	"""Under noise that a packing's levels share with their reference, intervals of fits hold the truth nine times in ten, and are narrower than a level's."""
+	fits, x = part("fits"), numpy.array([2.0, 4, 8, 16, 32]) * 1e-4
+	monkeypatch.setattr(fits, "RESAMPLES", 80)
+	truth = 20 * (x - 1e-4)
+	held, narrower = [], []
+	for seed in range(30):
+		random = numpy.random.default_rng(seed)
+		table = truth + random.normal(0, 0.01, (8, 5)) + random.normal(0, 0.01, (8, 1))
+		mean, half = fits.fit(x, table, 1e-4)
+		held.append(abs(mean - truth) < half)
+		narrower.append(half / (student.ppf(0.975, 7) * table.std(axis=0, ddof=1) / 8**0.5))
+	assert numpy.mean(held) > 0.85 and (numpy.mean(narrower, axis=0)[:3] < 0.8).all()
+	falling = fits.fit(1 / x, table, 1e4, sign=-1)
+	assert falling[0] == pytest.approx(mean) and falling[1] == pytest.approx(half)
+	assert fits.fit(x[:2], table[:, :2], 1e-4) is None and fits.fit(x, table[:2], 1e-4) is None
+
+
+def test_fitsStandBesideTheirLevels(part):
+	"""0 at the reference, the fit at the others, nan for other knobs; a packing without all levels is left out."""
+	curves, knobs, fits = (part(name) for name in ("curves", "knobs", "fits"))
+	levels = [knobs.Level(f"{x:g}", x, {"x": x}) for x in (1.0, 2.0, 4.0, 8.0)]
+	knob, base = knobs.Knob("knob", "x", levels), dict.fromkeys(curves.QUANTITIES, 1.0)
+	random = numpy.random.default_rng(2)
+
+	def runs(x):
+		values = {seed: {**base, "peak q": 1 + 0.1 * (x - 1) + random.normal(0, 1e-3)} for seed in range(8 if x < 8 else 7)}
+		return {seed: curves.Run(seed, "packing", value, 1, 1) for seed, value in values.items()}
+
+	found = {level.run: runs(level.x) for level in levels}
+	rows = curves.curves([knob], found)
+	columns = {row[1]: column for row, column in zip(rows, fits.columns([knob], found, rows)) if row[3] == "peak q"}
+	assert columns["1"] == (0, 0) and columns["8"][0] == pytest.approx(0.7, rel=0.01) and 0 < columns["8"][1] < 0.01
+	assert all(math.isnan(column[0]) for row, column in zip(rows, fits.columns([knob], found, rows)) if row[3] == "q at 1 %")
+	assert fits.differences("peak q", True, [found[level.run] for level in levels[1:]], found[levels[0].run]).shape == (7, 3)
+
+
+def test_publish(part, tmp_path, monkeypatch):
+	"""The package gets the rows that budgets are made of, and no others; they read back."""
+	from hexmembrane.scene import accuracy
+
+	header = [*part("curves").HEADER, *part("fits").HEADER]
+	names = [knob.name for knob in accuracy.KNOBS] + ["skin", "packings", "tier"]
+	rows = [[name, x, x, quantity, 0, 0.01, 0, 8, 1, x, "yes", 0.1 * x, 0.01] for name in names for x in (1, 2) for quantity in (*accuracy.QUANTITIES, "q at 1 %")]
+	part("table").write(str(tmp_path / "curves.csv"), header, rows)
+	monkeypatch.setattr(accuracy, "FILE", tmp_path / "package.csv")
+	part("accuracy").main(["publish", str(tmp_path)])
+	assert len((tmp_path / "package.csv").read_text().splitlines()) == 1 + (len(names) - 1) * 2 * 2
+	measured = accuracy.Measured.of(tmp_path / "package.csv")
+	assert set(measured.curves) == {knob.name for knob in accuracy.KNOBS} and measured.curves["step"].error(accuracy.PEAK, 2) == pytest.approx((0.2, 0.01))
+
+
+def test_proof(part, tmp_path, monkeypatch):
+	"""Its tests leave open what ``accuracy`` chooses and are on packings of their own; an error is held against the run's own budget."""
+	proof, survey = part("proof"), part("survey")
+	jobs = proof.jobs()
+	assert len(jobs) == 40 and not {keys["specimen"]["seed"] for keys in jobs.values()} & set(range(7, 15))
+	for keys in jobs.values():
+		Config.of(keys)
+	peaks = {survey.place(f"{name}, seed 101", tmp_path): peak for name, peak in (("slow", 1.0e5), ("0.05", 1.04e5), ("0.08", 1.1e5), ("0.12", 0.9e5))}
+	monkeypatch.setattr(proof.records, "read", lambda path: records(61, 0.15, lambda strain: numpy.full(len(strain), peaks[path.parent])))
+	for out in peaks:
+		out.mkdir()
+		out.with_name(out.name + ".log").write_text("0 \n")
+		(out / "config.yaml").write_text("made: {budget: {budget of a run: {peak q: 0.05, volumetric strain at 15 %: 0.01}}}\n")
+	found = [row for row in proof.rows(tmp_path) if row[2] == "peak q"]
+	assert [(row[0], row[1], row[-1]) for row in found] == [(101, "0.05", "yes"), (101, "0.08", "no"), (101, "0.12", "no")]
+	assert [row[5] for row in found] == pytest.approx([0.04, 0.1, -0.1])
