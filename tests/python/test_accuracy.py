@@ -181,7 +181,7 @@ def test_publish(part, tmp_path, monkeypatch):
 	from hexmembrane.scene import accuracy
 
 	header = [*part("curves").HEADER, *part("fits").HEADER]
-	names = [knob.name for knob in accuracy.KNOBS] + ["skin", "packings", "tier"]
+	names = [knob.name for knob in accuracy.KNOBS] + ["skin", "packings", accuracy.SWITCH, "tier"]
 	rows = [[name, x, x, quantity, 0, 0.01, 0, 8, 1, x, "yes", 0.1 * x, 0.01] for name in names for x in (1, 2) for quantity in (*accuracy.QUANTITIES, "q at 1 %")]
 	part("table").write(str(tmp_path / "curves.csv"), header, rows)
 	monkeypatch.setattr(accuracy, "FILE", tmp_path / "package.csv")

@@ -12,7 +12,7 @@ from hexmembrane.configuration import Config, ConfigError
 from hexmembrane.scene import accuracy, specimen
 
 QUICK = pathlib.Path(__file__).resolve().parents[2] / "examples" / "quick.yaml"
-HEADER = "knob,value,x,quantity,fit,scatter,fit_half_width,packings,steps,time\n"
+HEADER = "knob,value,x,quantity,fit,scatter,fit_half_width,packings,steps,time,mean,half_width\n"
 # error of the peak of q, error of the volumetric strain, time at (x, ...) of each knob
 LEVELS = {
 	"velocity": {1e-4: (0, 0, 8), 1e-3: (0.01, 1e-3, 1), 1e-2: (-0.05, 4e-3, 0.1)},
@@ -20,6 +20,7 @@ LEVELS = {
 	"step": {0.1: (0, 0, 5), 0.5: (0.001, 0, 1), 0.8: (0.004, 0, 0.6)},
 	"damping": {0.1: (0, 0, 1), 0.9: (0.02, 1e-3, 1)},
 	"size ratio": {0.4: (0, 0, 2), 0.8: (0.002, 1e-4, 1), 2.0: (0.02, 1e-3, 0.7)},
+	"density scaling": {1: (0, 0, 1), 8: (0.001, 0, 1), 64: (0.003, 1e-4, 1)},
 }
 HALF = 5e-4
 PEAK, VOLUME = accuracy.PEAK, accuracy.VOLUME
@@ -27,10 +28,12 @@ PEAK, VOLUME = accuracy.PEAK, accuracy.VOLUME
 
 @pytest.fixture
 def measured(tmp_path):
-	rows = ["skin,1,1,{0},0,0,0,8,1,1\nskin,2,2,{0},0,{1},0,8,1,1\npackings,,nan,{0},0,{2},0,8,1,1\n".format(*part) for part in ((PEAK, 0.004, 0.03), (VOLUME, 0.0005, 0.003))]
+	rows = ["skin,1,1,{0},0,0,0,8,1,1,0,0\nskin,2,2,{0},0,{1},0,8,1,1,0,0\npackings,,nan,{0},0,{2},0,8,1,1,0,0\n".format(*part) for part in ((PEAK, 0.004, 0.03), (VOLUME, 0.0005, 0.003))]
+	for value, mean, half in (("off", 0, 0), ("on", -0.01, 0.002), ("on with the membrane", 0.02, 0.003)):
+		rows += [f"mass scaling,{value},1,{name},nan,0,nan,8,1,1,{mean},{half}\n" for name in (PEAK, VOLUME)]
 	for knob, levels in LEVELS.items():
 		for x, (q, volume, time) in reversed(levels.items()):
-			rows.append(f"{knob},{x},{x},{PEAK},{q},0.005,{HALF},8,1,{time}\n{knob},{x},{x},{VOLUME},{volume},0.0005,0,8,1,{time}\n{knob},{x},{x},q at 1 %,9,9,9,8,1,1\n")
+			rows.append(f"{knob},{x},{x},{PEAK},{q},0.005,{HALF},8,1,{time},9,9\n{knob},{x},{x},{VOLUME},{volume},0.0005,0,8,1,{time},9,9\n{knob},{x},{x},q at 1 %,9,9,9,8,1,1\n")
 	path = tmp_path / "curves.csv"
 	path.write_text(HEADER + "".join(rows))
 	return accuracy.Measured.of(path)
@@ -63,11 +66,27 @@ def test_budgetIsTheSumOfItsParts(measured):
 	assert parts["shear.velocity"][1] == pytest.approx(inertial)
 	assert parts["specimen.emod"][1] == pytest.approx(math.pi * 4e7 / 4e5)
 	assert found.scatter[PEAK] == pytest.approx(0.004) and found.packings[PEAK] == pytest.approx(0.03)
-	assert found.total(PEAK) == pytest.approx(sum(errors[PEAK][0] for *_, errors in parts.values()) + math.sqrt(5 * HALF**2 + 0.008**2))
+	assert found.total(PEAK) == pytest.approx(sum(errors[PEAK][0] for *_, errors in parts.values()) + math.sqrt(6 * HALF**2 + 0.008**2))
 	few = accuracy.budget(config, radii[:300], measured)
 	assert few.scatter[PEAK] == pytest.approx(0.008)
 	assert len(found.lines()) == 1 + len(LEVELS) + 3 and found.unmeasured() == []
 	assert set(found.asDict()) == {*parts, "scatter of runs", "scatter of packings", "budget of a run"}
+
+
+def test_massScalingIsInTheBudget(measured):
+	"""On it has the error of its own row, of both where the membrane's masses follow the grains'; off none; ``accuracy`` counts it."""
+	radii = specimen.plannedRadii(quick())
+	plain = accuracy.budget(quick(), radii, measured)
+	assert "specimen.massScaling" not in [key for key, *_ in plain.parts]
+	for membrane, mean in ((1.0, 0.01), (None, 0.02)):
+		config = quick(OPEN, accuracy=0.05, specimen={"massScaling": True}, membrane={"densityScaling": membrane})
+		found = accuracy.budget(config, radii, measured)
+		assert found.parts[-1][0] == "specimen.massScaling" and found.parts[-1][3][PEAK][0] == mean
+		assert "on" in found.lines()[len(found.parts)] and found.asDict()["specimen.massScaling"][PEAK][0] == mean
+		accuracy.choose(config, radii, measured)
+		assert accuracy.budget(config, radii, measured).total(PEAK) <= 0.05 * (1 + 1e-4)
+	parts = {key: errors for key, _, _, errors in found.parts}
+	assert parts["membrane.densityScaling"][PEAK][0] == 0.003 and "as needed" in "\n".join(found.lines())
 
 
 def test_outsideOfWhatWasMeasured(measured):
@@ -92,11 +111,11 @@ def test_cheapestWithinTheError(measured):
 	found = accuracy.budget(config, radii, measured)
 	assert found.total(PEAK) <= 0.03 * (1 + 1e-4)  # values are rounded to four digits
 	damping = math.log(2) / math.log(9) * 0.02
-	free = [name for name in LEVELS if name != "damping"]
+	free = [name for name in LEVELS if name not in ("damping", "density scaling")]
 	cheapest = min(
 		math.prod(LEVELS[name][x][2] for name, x in zip(free, pick))
 		for pick in itertools.product(*(LEVELS[name] for name in free))
-		if sum(abs(LEVELS[name][x][0]) for name, x in zip(free, pick)) + damping + math.sqrt(5 * HALF**2 + 0.008**2) <= 0.03
+		if sum(abs(LEVELS[name][x][0]) for name, x in zip(free, pick)) + damping + math.sqrt(6 * HALF**2 + 0.008**2) <= 0.03
 	)
 	curves = measured.curves
 	levels = {knob.name: knob.level(config, radii) for knob in accuracy.KNOBS}

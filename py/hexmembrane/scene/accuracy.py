@@ -75,7 +75,11 @@ KNOBS = (
 	Knob("step", "numerics.safety", lambda c, r: c.numerics.safety, lambda x, c, r: x),
 	Knob("damping", "numerics.damping", lambda c, r: c.numerics.damping, chosen=False),
 	Knob("size ratio", "membrane.sizeRatio", _sizeRatio, lambda x, c, r: x),
+	# the factor is not known before the scene is there: the largest that was measured
+	Knob("density scaling", "membrane.densityScaling", lambda c, r: c.membrane.densityScaling or 64.0, chosen=False),
 )
+#: The knob of ``specimen.massScaling``, which has no level between on and off.
+SWITCH = "mass scaling"
 
 
 @dataclasses.dataclass
@@ -101,9 +105,10 @@ class Curve:
 
 @dataclasses.dataclass
 class Measured:
-	"""What the study found: curves by knob, and the scatter of one run by quantity, at GRAINS grains."""
+	"""What the study found: curves by knob, (|m|, h) by quantity of SWITCH's levels, and the scatter of one run by quantity, at GRAINS grains."""
 
 	curves: dict
+	switch: dict
 	scatter: dict
 	packings: dict
 
@@ -123,7 +128,11 @@ class Measured:
 			rising = x.argsort()
 			mean, half = ({name: column(what, knob, name)[rising] for name in QUANTITIES} for what in ("fit", "fit_half_width"))
 			curves[knob] = Curve(x[rising], mean, half, column("time", knob, PEAK)[rising])
-		return cls(curves, scatter, packings)
+		switch = {}
+		for row in rows:
+			if row["knob"] == SWITCH:
+				switch.setdefault(row["value"], {})[row["quantity"]] = (abs(float(row["mean"])), float(row["half_width"]))
+		return cls(curves, switch, scatter, packings)
 
 
 @dataclasses.dataclass
@@ -157,7 +166,7 @@ class Budget:
 
 		for key, value, x, errors in self.parts:
 			costs = [f"{100 * mean:.2f} +- {100 * half:.2f} %" for mean, half in (errors[name] for name in QUANTITIES)] if errors else ["not measured there", ""]
-			line(key, *costs, f"{value:.4g}, level {x:.3g}")
+			line(key, *costs, "on" if value is True else f"{'as needed' if value is None else format(value, '.4g')}, level {x:.3g}")
 		for name, part in (("scatter of runs", self.scatter), ("scatter of packings", self.packings), ("budget of a run", {name: self.total(name) for name in QUANTITIES})):
 			line(name, *(f"{100 * part[name]:.2f} %" for name in QUANTITIES))
 		return said
@@ -190,7 +199,15 @@ def budget(config, radii, measured=None):
 			curve, x = measured.curves[knob.name], knob.level(config, radii)
 			errors = {name: tuple(float(part) for part in curve.error(name, x)) for name in QUANTITIES} if curve.covers(x) else None
 			parts.append((knob.key, _get(config, knob.key), x, errors))
+	if config.specimen.massScaling:
+		parts.append(("specimen.massScaling", True, math.nan, measured.switch[_switchLevel(config)]))
 	return Budget(parts, _scattered(measured.scatter, len(radii)), _scattered(measured.packings, len(radii)))
+
+
+def _switchLevel(config):
+	if not config.specimen.massScaling:
+		return "off"
+	return "on with the membrane" if config.boundary == "membrane" and config.membrane.densityScaling is None else "on"
 
 
 def _get(config, key):
@@ -216,7 +233,7 @@ def choose(config, radii, measured=None):
 	knobs = [knob for knob in KNOBS if knob.applies(config) and knob.name in measured.curves]
 	levels = [_levels(measured.curves[knob.name].x) if knob.key in openKeys(config) else _level(knob, measured, config, radii) for knob in knobs]
 	grid = numpy.meshgrid(*levels, indexing="ij")
-	errors = [measured.curves[knob.name].error(PEAK, x) for knob, x in zip(knobs, grid)]
+	errors = [*(measured.curves[knob.name].error(PEAK, x) for knob, x in zip(knobs, grid)), measured.switch[_switchLevel(config)][PEAK]]
 	scatter = 2 * _scattered(measured.scatter, len(radii))[PEAK]
 	totals = sum(mean for mean, _ in errors) + numpy.sqrt(scatter**2 + sum(half**2 for _, half in errors))
 	costs = math.prod(measured.curves[knob.name].cost(x) for knob, x in zip(knobs, grid))
