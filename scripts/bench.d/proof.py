@@ -20,7 +20,7 @@ from hexmembrane.output import records
 from hexmembrane.scene import accuracy
 
 SEEDS = range(101, 111)
-ACCURACIES = (0.05, 0.08, 0.12)
+ACCURACIES = (0.08, 0.12, 0.2)
 #: Keys that are left to ``accuracy``.
 OPEN = (("shear", "velocity"), ("specimen", "emod"), ("membrane", "sizeRatio"))
 SLOW = {"shear": {"velocity": 0.015}, "specimen": {"emod": 3000 * 4e5 / math.pi}, "numerics": {"damping": 0.1}}

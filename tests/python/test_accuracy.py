@@ -188,7 +188,7 @@ def test_publish(part, tmp_path, monkeypatch):
 	part("accuracy").main(["publish", str(tmp_path)])
 	assert len((tmp_path / "package.csv").read_text().splitlines()) == 1 + (len(names) - 1) * 2 * 2
 	measured = accuracy.Measured.of(tmp_path / "package.csv")
-	assert set(measured.curves) == {knob.name for knob in accuracy.KNOBS} and measured.curves["step"].error(accuracy.PEAK, 2) == pytest.approx((0.2, 0.01))
+	assert set(measured.curves) == {knob.name for knob in accuracy.KNOBS} and measured.curves["step"].error(accuracy.PEAK, 2) == pytest.approx((0.2, 0.01, 0.01))
 
 
 def test_proof(part, tmp_path, monkeypatch):
@@ -198,12 +198,12 @@ def test_proof(part, tmp_path, monkeypatch):
 	assert len(jobs) == 40 and not {keys["specimen"]["seed"] for keys in jobs.values()} & set(range(7, 15))
 	for keys in jobs.values():
 		Config.of(keys)
-	peaks = {survey.place(f"{name}, seed 101", tmp_path): peak for name, peak in (("slow", 1.0e5), ("0.05", 1.04e5), ("0.08", 1.1e5), ("0.12", 0.9e5))}
+	peaks = {survey.place(f"{name}, seed 101", tmp_path): peak for name, peak in zip(("slow", *proof.ACCURACIES), (1.0e5, 1.04e5, 1.1e5, 0.9e5))}
 	monkeypatch.setattr(proof.records, "read", lambda path: records(61, 0.15, lambda strain: numpy.full(len(strain), peaks[path.parent])))
 	for out in peaks:
 		out.mkdir()
 		out.with_name(out.name + ".log").write_text("0 \n")
 		(out / "config.yaml").write_text("made: {budget: {budget of a run: {peak q: 0.05, volumetric strain at 15 %: 0.01}}}\n")
 	found = [row for row in proof.rows(tmp_path) if row[2] == "peak q"]
-	assert [(row[0], row[1], row[-1]) for row in found] == [(101, "0.05", "yes"), (101, "0.08", "no"), (101, "0.12", "no")]
+	assert [(row[0], row[1], row[-1]) for row in found] == [(101, str(share), held) for share, held in zip(proof.ACCURACIES, ("yes", "no", "no"))]
 	assert [row[5] for row in found] == pytest.approx([0.04, 0.1, -0.1])

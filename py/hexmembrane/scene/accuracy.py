@@ -2,13 +2,13 @@
 """What the settings of a test cost in accuracy: its error budget, and the cheapest settings within an error. Uses nothing of YADE.
 
 Each knob's curve was measured on packings that differ in nothing else (``scripts/bench accuracy``; the page with figures:
-examples/accuracy/README.md): the mean difference m_k to a converged reference, and the half width h_k of its 95 % interval. Two runs differ
-by their *scatter* s too: grains that start the least bit otherwise take other paths. The budget of a run, the largest difference to a run
-with all knobs at their references that is to be expected in 95 of 100, is
+examples/accuracy/README.md): the mean difference m_k to a converged reference, the half width h_k of its 95 % interval, and the scatter s_k of the
+difference from packing to packing. Runs that differ by rounding alone scatter by s_0: grains that start the least bit otherwise take other paths.
+The budget of a run, the largest difference to a run with all knobs at their references that is to be expected in 95 of 100, is
 
-	sum |m_k| + sqrt(sum h_k^2 + (2 s)^2)
+	sum |m_k| + sqrt(sum h_k^2 + 4 s^2),   s^2 = s_0^2 + sum max(0, s_k^2 - s_0^2)
 
-Errors of one sign are not set off against those of the other. The scatter was measured at 1,200 grains and goes with 1/sqrt(N).
+Errors of one sign are not set off against those of the other. Scatter was measured at 1,200 grains and goes with 1/sqrt(N).
 """
 
 import csv
@@ -89,11 +89,13 @@ class Curve:
 	x: numpy.ndarray
 	mean: dict
 	halfWidth: dict
+	scatter: dict
 	time: numpy.ndarray
 
 	def error(self, quantity, x):
-		"""Size of the mean error at levels x and the half width of its interval, linear in log x between what was measured."""
-		return tuple(numpy.interp(numpy.log(x), numpy.log(self.x), part) for part in (numpy.abs(self.mean[quantity]), self.halfWidth[quantity]))
+		"""|m|, h and s at levels x, linear in log x between what was measured."""
+		parts = numpy.abs(self.mean[quantity]), self.halfWidth[quantity], self.scatter[quantity]
+		return tuple(numpy.interp(numpy.log(x), numpy.log(self.x), part) for part in parts)
 
 	def cost(self, x):
 		"""Time of a test, relative to the base's."""
@@ -105,7 +107,7 @@ class Curve:
 
 @dataclasses.dataclass
 class Measured:
-	"""What the study found: curves by knob, (|m|, h) by quantity of SWITCH's levels, and the scatter of one run by quantity, at GRAINS grains."""
+	"""What the study found at GRAINS grains: curves by knob, (|m|, h, s) by quantity of SWITCH's levels, s_0 and the scatter of packings by quantity."""
 
 	curves: dict
 	switch: dict
@@ -127,20 +129,34 @@ class Measured:
 			x = column("x", knob, PEAK)
 			rising = x.argsort()
 			mean, half = ({name: column(what, knob, name)[rising] for name in QUANTITIES} for what in ("fit", "fit_half_width"))
-			curves[knob] = Curve(x[rising], mean, half, column("time", knob, PEAK)[rising])
+			spread = {name: _outwards(column("scatter", knob, name)[rising]) for name in QUANTITIES}
+			curves[knob] = Curve(x[rising], mean, half, spread, column("time", knob, PEAK)[rising])
 		switch = {}
 		for row in rows:
 			if row["knob"] == SWITCH:
-				switch.setdefault(row["value"], {})[row["quantity"]] = (abs(float(row["mean"])), float(row["half_width"]))
+				switch.setdefault(row["value"], {})[row["quantity"]] = (abs(float(row["mean"])), float(row["half_width"]), float(row["scatter"]))
 		return cls(curves, switch, scatter, packings)
+
+
+def _outwards(scatter):
+	"""Scatter that does not fall from the reference, whose own is 0, outwards: eight packings tell no dip from chance."""
+	reference = int(scatter.argmin())
+	low, high = scatter[: reference + 1][::-1], scatter[reference:]
+	return numpy.concatenate([numpy.maximum.accumulate(low)[::-1], numpy.maximum.accumulate(high)[1:]])
+
+
+def _total(errors, floor):
+	"""The budget from (|m|, h, s) of all knobs and s_0, scatters as they are with the test's number of grains; numbers or arrays."""
+	scatter = floor**2 + sum(numpy.maximum(0, s**2 - floor**2) for _, _, s in errors)
+	return sum(mean for mean, _, _ in errors) + numpy.sqrt(sum(half**2 for _, half, _ in errors) + 4 * scatter)
 
 
 @dataclasses.dataclass
 class Budget:
 	"""The error budget of a test.
 
-	:param parts: (key, value, level, (|m|, h) by quantity) of each knob; None instead where the level is outside what was measured.
-	:param scatter: of one run, by quantity.
+	:param parts: (key, value, level, (|m|, h, s) by quantity) of each knob; None instead where the level is outside what was measured.
+	:param scatter: s_0 by quantity.
 	:param packings: of packings that differ in their seed alone, by quantity.
 	"""
 
@@ -150,31 +166,30 @@ class Budget:
 
 	def total(self, quantity):
 		"""The budget of a run, of the knobs that were measured there."""
-		errors = [errors[quantity] for *_, errors in self.parts if errors]
-		return sum(mean for mean, _ in errors) + math.hypot(2 * self.scatter[quantity], *(half for _, half in errors))
+		return float(_total([errors[quantity] for *_, errors in self.parts if errors], self.scatter[quantity]))
 
 	def unmeasured(self):
 		"""Keys whose level is outside what was measured."""
 		return [key for key, *_, bounds in self.parts if bounds is None]
 
 	def lines(self):
-		"""The budget in words, a line each."""
-		said = [f"error budget          {'peak of q':<18}{VOLUME}"]
+		"""The budget in words, a line each: mean error +- its half width, scatter."""
+		said = [f"error budget              {'peak of q':<22}{VOLUME}"]
 
 		def line(name, peak, volume, more=""):
-			said.append(f"  {name:<20}{peak:<18}{volume:<18}{more}".rstrip())
+			said.append(f"  {name:<24}{peak:<22}{volume:<22}{more}".rstrip())
 
 		for key, value, x, errors in self.parts:
-			costs = [f"{100 * mean:.2f} +- {100 * half:.2f} %" for mean, half in (errors[name] for name in QUANTITIES)] if errors else ["not measured there", ""]
+			costs = [f"{100 * mean:.2f} +- {100 * half:.2f}, {100 * spread:.2f} %" for mean, half, spread in (errors[name] for name in QUANTITIES)] if errors else ["not measured there", ""]
 			line(key, *costs, "on" if value is True else f"{'as needed' if value is None else format(value, '.4g')}, level {x:.3g}")
-		for name, part in (("scatter of runs", self.scatter), ("scatter of packings", self.packings), ("budget of a run", {name: self.total(name) for name in QUANTITIES})):
+		for name, part in (("rounding alone", self.scatter), ("scatter of packings", self.packings), ("budget of a run", {name: self.total(name) for name in QUANTITIES})):
 			line(name, *(f"{100 * part[name]:.2f} %" for name in QUANTITIES))
 		return said
 
 	def asDict(self):
-		"""For the resolved configuration: sizes of mean errors and half widths by key, then the sums; plain numbers."""
-		parts = {key: {name: [_short(part) for part in errors[name]] for name in QUANTITIES} if errors else "not measured there" for key, _, _, errors in self.parts}
-		sums = {"scatter of runs": self.scatter, "scatter of packings": self.packings, "budget of a run": {name: self.total(name) for name in QUANTITIES}}
+		"""For the resolved configuration: sizes of mean errors, half widths and scatters by key, then the sums; plain numbers."""
+		parts = {key: {name: [_short(float(part)) for part in errors[name]] for name in QUANTITIES} if errors else "not measured there" for key, _, _, errors in self.parts}
+		sums = {"rounding alone": self.scatter, "scatter of packings": self.packings, "budget of a run": {name: self.total(name) for name in QUANTITIES}}
 		return {**parts, **{title: {name: _short(part[name]) for name in QUANTITIES} for title, part in sums.items()}}
 
 
@@ -184,6 +199,10 @@ def _short(number):
 
 def _scattered(scatter, count):
 	return {name: value * math.sqrt(GRAINS / count) for name, value in scatter.items()}
+
+
+def _withGrains(error, count):
+	return tuple(part * share for part, share in zip(error, (1, 1, math.sqrt(GRAINS / count))))
 
 
 def budget(config, radii, measured=None):
@@ -197,10 +216,10 @@ def budget(config, radii, measured=None):
 	for knob in KNOBS:
 		if knob.applies(config) and knob.name in measured.curves:
 			curve, x = measured.curves[knob.name], knob.level(config, radii)
-			errors = {name: tuple(float(part) for part in curve.error(name, x)) for name in QUANTITIES} if curve.covers(x) else None
+			errors = {name: _withGrains(curve.error(name, x), len(radii)) for name in QUANTITIES} if curve.covers(x) else None
 			parts.append((knob.key, _get(config, knob.key), x, errors))
 	if config.specimen.massScaling:
-		parts.append(("specimen.massScaling", True, math.nan, measured.switch[_switchLevel(config)]))
+		parts.append(("specimen.massScaling", True, math.nan, {name: _withGrains(errors, len(radii)) for name, errors in measured.switch[_switchLevel(config)].items()}))
 	return Budget(parts, _scattered(measured.scatter, len(radii)), _scattered(measured.packings, len(radii)))
 
 
@@ -234,14 +253,14 @@ def choose(config, radii, measured=None):
 	levels = [_levels(measured.curves[knob.name].x) if knob.key in openKeys(config) else _level(knob, measured, config, radii) for knob in knobs]
 	grid = numpy.meshgrid(*levels, indexing="ij")
 	errors = [*(measured.curves[knob.name].error(PEAK, x) for knob, x in zip(knobs, grid)), measured.switch[_switchLevel(config)][PEAK]]
-	scatter = 2 * _scattered(measured.scatter, len(radii))[PEAK]
-	totals = sum(mean for mean, _ in errors) + numpy.sqrt(scatter**2 + sum(half**2 for _, half in errors))
+	floor = _scattered(measured.scatter, len(radii))[PEAK]
+	totals = _total([_withGrains(error, len(radii)) for error in errors], floor)
 	costs = math.prod(measured.curves[knob.name].cost(x) for knob, x in zip(knobs, grid))
 	if totals.min() > config.accuracy:
 		raise ConfigError(
 			"accuracy",
 			config.accuracy,
-			f"is out of reach: {100 * totals.min():.2g} % is the least with the keys that are given, {100 * scatter:.2g} % of it two scatters of a run",
+			f"is out of reach: {100 * totals.min():.2g} % is the least with the keys that are given, {200 * floor:.2g} % of it for rounding alone",
 			f"accuracy: {math.ceil(1000 * totals.min()) / 1000:g} or more, or more grains, or leave keys out",
 		)
 	best = numpy.unravel_index(numpy.where(totals <= config.accuracy, costs, numpy.inf).argmin(), costs.shape)
