@@ -7,19 +7,92 @@ namespace hexmembrane {
 
 namespace {
 
-constexpr int planes = 2;
-// Less of a tetrahedron than this is given away undivided: rounding, not geometry.
-constexpr double negligible = 1e-16;
+// A corner nearer to a border than this, relative to the tetrahedron's farthest, is on it: far above rounding, so that no face is crossed twice.
+constexpr double onBorder = 1e-12;
 
 } // namespace
 
-CellShares::CellShares(const std::vector<PowerSite>& theSites, const std::vector<int>& theStarts, const std::vector<int>& theNeighbours, double low, double high)
-        : sites(theSites), starts(theStarts), neighbours(theNeighbours), bottom(low), top(high)
+ConvexPart ConvexPart::whole()
 {
-	const std::size_t count = starts.size() - 1;
-	level.reserve(count);
-	for (std::size_t i = 0; i < count; ++i) level.push_back(sites[i].centre.squaredNorm() - sites[i].radius * sites[i].radius);
-	seenBy.assign(count, 0);
+	ConvexPart made;
+	made.corners = {Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+	made.faces = {3, 1, 2, 3, 3, 0, 3, 2, 3, 0, 1, 3, 3, 0, 2, 1};
+	return made;
+}
+
+double ConvexPart::fraction() const
+{
+	double sum = 0;
+	const Vec3& apex = corners[0];
+	for (std::size_t f = 0; f < faces.size(); f += faces[f] + 1) {
+		const int* corner = &faces[f + 1];
+		const Vec3 first = corners[corner[0]] - apex;
+		for (int k = 1; k + 1 < faces[f]; ++k) sum += first.dot((corners[corner[k]] - apex).cross(corners[corner[k + 1]] - apex));
+	}
+	return sum;
+}
+
+void ConvexPart::clip(const ConvexPart& of, const std::vector<double>& side)
+{
+	corners.clear();
+	faces.clear();
+	crossings.clear();
+	rim.clear();
+	renumbered.assign(of.corners.size(), -1);
+	for (std::size_t c = 0; c < of.corners.size(); ++c)
+		if (side[c] >= 0) {
+			renumbered[c] = static_cast<int>(corners.size());
+			corners.push_back(of.corners[c]);
+		}
+	const auto crossing = [&](int a, int b) {
+		if (a > b) std::swap(a, b);
+		for (const auto& known : crossings)
+			if (known[0] == a && known[1] == b) return known[2];
+		// in the order of the numbers: the other part finds the very same point
+		corners.push_back((side[a] * of.corners[b] - side[b] * of.corners[a]) / (side[a] - side[b]));
+		crossings.push_back({a, b, static_cast<int>(corners.size()) - 1});
+		return crossings.back()[2];
+	};
+	for (std::size_t f = 0; f < of.faces.size(); f += of.faces[f] + 1) {
+		const int count = of.faces[f], *corner = &of.faces[f + 1];
+		const std::size_t start = faces.size();
+		faces.push_back(0);
+		int left = -1, entered = -1; // where this face leaves the kept side, where it comes back
+		bool kept = false;
+		for (int k = 0; k < count; ++k) {
+			const int a = corner[k], b = corner[k + 1 < count ? k + 1 : 0];
+			if (side[a] >= 0) {
+				faces.push_back(renumbered[a]);
+				kept = kept || side[a] > 0;
+				if (side[a] == 0) {
+					// the border runs through this corner: which way does the face go on?
+					const int before = corner[k > 0 ? k - 1 : count - 1];
+					if (side[b] <= 0 && side[before] > 0) left = renumbered[a];
+					if (side[b] > 0 && side[before] <= 0) entered = renumbered[a];
+				}
+			}
+			if (side[a] > 0 && side[b] < 0) faces.push_back(left = crossing(a, b));
+			if (side[a] < 0 && side[b] > 0) faces.push_back(entered = crossing(a, b));
+		}
+		faces[start] = static_cast<int>(faces.size() - start) - 1;
+		if (!kept)
+			faces.resize(start); // an edge or a corner on the border
+		else if (left >= 0 && entered >= 0 && left != entered)
+			rim.push_back({entered, left});
+	}
+	// the face on the border runs against the others' edges
+	if (rim.size() < 3) return;
+	faces.push_back(static_cast<int>(rim.size()));
+	for (std::size_t k = 0, at = 0; k < rim.size(); ++k) {
+		faces.push_back(rim[at][0]);
+		const int next = rim[at][1];
+		for (at = 0; at + 1 < rim.size() && rim[at][0] != next;) ++at;
+	}
+}
+
+CellShares::CellShares(const std::vector<PowerSite>& theSites, const std::vector<int>& theStarts, const std::vector<int>& theNeighbours, double low, double high)
+        : sites(theSites), starts(theStarts), neighbours(theNeighbours), bottom(low), top(high), seenBy(theStarts.size() - 1, 0)
+{
 }
 
 int CellShares::cellAt(const Vec3& x, int from) const
@@ -40,13 +113,10 @@ int CellShares::cellAt(const Vec3& x, int from) const
 	return best;
 }
 
-bool CellShares::mayOwn(int candidate) const
+bool CellShares::mayOwn(const AtCorners& mine) const
 {
-	const auto& mine = atCorner[candidate];
-	for (int c = 0; c < candidate; ++c) {
-		const auto& theirs = atCorner[c];
+	for (const AtCorners& theirs : powers)
 		if (theirs[0] <= mine[0] && theirs[1] <= mine[1] && theirs[2] <= mine[2] && theirs[3] <= mine[3]) return false;
-	}
 	return true;
 }
 
@@ -54,145 +124,110 @@ bool CellShares::mayOwn(int candidate) const
 void CellShares::gather(const std::array<Vec3, 4>& x, const std::array<int, 4>& at)
 {
 	candidates.clear();
-	atCorner.clear();
+	powers.clear();
 	++turn;
 	const auto look = [&](int site) {
 		if (seenBy[site] == turn) return;
 		seenBy[site] = turn;
-		atCorner.push_back({power(site, x[0]), power(site, x[1]), power(site, x[2]), power(site, x[3])});
-		if (mayOwn(static_cast<int>(atCorner.size()) - 1))
-			candidates.push_back(site);
-		else
-			atCorner.pop_back();
+		const AtCorners mine{power(site, x[0]), power(site, x[1]), power(site, x[2]), power(site, x[3])};
+		if (!mayOwn(mine)) return;
+		powers.push_back(mine);
+		candidates.push_back(site);
 	};
 	for (int site : at) look(site);
 	for (std::size_t c = 0; c < candidates.size(); ++c)
 		for (int k = starts[candidates[c]], end = starts[candidates[c] + 1]; k < end; ++k) look(neighbours[k]);
 }
 
+ConvexPart& CellShares::spare(std::size_t depth)
+{
+	if (spares.size() <= depth) spares.resize(depth + 1);
+	return spares[depth];
+}
+
+std::array<bool, 2> CellShares::signs(const ConvexPart& part, const AtCorners& values)
+{
+	const double near = onBorder * std::max({std::abs(values[0]), std::abs(values[1]), std::abs(values[2]), std::abs(values[3])});
+	const Vec3 slope(values[1] - values[0], values[2] - values[0], values[3] - values[0]);
+	std::array<bool, 2> found{false, false};
+	sides.resize(part.corners.size());
+	for (std::size_t c = 0; c < sides.size(); ++c) {
+		const double side = values[0] + slope.dot(part.corners[c]);
+		sides[c] = std::abs(side) <= near ? 0 : side;
+		found[0] |= sides[c] < 0;
+		found[1] |= sides[c] > 0;
+	}
+	return found;
+}
+
 void CellShares::divide(const std::array<Vec3, 4>& x, const std::array<int, 4>& at, std::vector<Share>& out)
 {
 	const bool oneCell = at[0] == at[1] && at[0] == at[2] && at[0] == at[3]; // cells are convex
-	const bool uncut = std::all_of(x.begin(), x.end(), [&](const Vec3& c) { return c[2] >= bottom && c[2] <= top; });
-	if (oneCell && uncut) {
-		out.push_back({at[0], 1});
-		return;
-	}
 	if (oneCell) {
 		candidates = {at[0]};
-		atCorner.assign(1, {0, 0, 0, 0});
+		powers.assign(1, {0, 0, 0, 0});
 	} else
 		gather(x, at);
-	const int count = static_cast<int>(candidates.size());
-	width = planes + count;
-	values.resize(4 * width);
-	corners = 4;
-	for (int k = 0; k < 4; ++k) {
-		double* to = row(k);
-		to[0] = x[k][2] - bottom;
-		to[1] = top - x[k][2];
-		for (int c = 0; c < count; ++c) to[planes + c] = atCorner[c][k];
+	const ConvexPart* part = &unit;
+	std::size_t depth = 0;
+	for (double sign : {1., -1.}) {
+		const double face = sign > 0 ? bottom : top;
+		const auto over = [&](int k) { return sign * (x[k][2] - face); };
+		const auto [negative, positive] = signs(*part, {over(0), over(1), over(2), over(3)});
+		if (negative && !positive) return;
+		if (!negative) continue;
+		ConvexPart& within = spare(depth++);
+		within.clip(*part, sides);
+		part = &within;
 	}
-	owned.assign(count, 0);
-	active.resize(count);
-	for (int c = 0; c < count; ++c) active[c] = c;
-	if (uncut)
-		settle({0, 1, 2, 3}, 1, 0, count);
-	else
-		cut({0, 1, 2, 3}, 1, 0);
-	for (int c = 0; c < count; ++c)
+	owned.assign(candidates.size(), 0);
+	active.resize(candidates.size());
+	for (std::size_t c = 0; c < active.size(); ++c) active[c] = static_cast<int>(c);
+	settle(*part, 0, depth);
+	for (std::size_t c = 0; c < candidates.size(); ++c)
 		if (owned[c] > 0) out.push_back({candidates[c], owned[c]});
 }
 
-int CellShares::between(const Crossing& crossing, const Corners& of)
+// Compares the first candidate of the last list with the others until one is left, or the border of two crosses the part.
+void CellShares::settle(const ConvexPart& part, int begin, std::size_t depth)
 {
-	if (values.size() < std::size_t(corners + 1) * width) values.resize(2 * std::size_t(corners + 1) * width);
-	const double *a = row(of[crossing.from]), *b = row(of[crossing.to]);
-	double* to = row(corners);
-	for (int i = 0; i < width; ++i) to[i] = a[i] + crossing.share * (b[i] - a[i]);
-	return corners++;
-}
-
-// Drops what lies beyond the two planes.
-void CellShares::cut(Corners of, double part, int plane)
-{
-	if (plane == planes) {
-		const int begin = static_cast<int>(active.size()), count = width - planes;
-		for (int c = 0; c < count; ++c) active.push_back(c);
-		settle(of, part, begin, begin + count);
-		active.resize(begin);
-		return;
-	}
-	int within = -1, beyond = -1;
-	for (int k = 0; k < 4; ++k) {
-		const double side = row(of[k])[plane];
-		if (side > 0) within = k;
-		if (side < 0) beyond = k;
-	}
-	if (within < 0) return; // nothing, or a face on the plane
-	if (beyond < 0) return cut(of, part, plane + 1);
-	const double in = row(of[within])[plane], out = row(of[beyond])[plane], share = in / (in - out);
-	const int kept = corners, middle = between({within, beyond, share}, of);
-	row(middle)[plane] = 0;
-	Corners near = of, far = of;
-	near[beyond] = middle;
-	far[within] = middle;
-	cut(near, part * share, plane);
-	cut(far, part * (1 - share), plane);
-	corners = kept;
-}
-
-// Compares the first candidate of the list with the others until one is left, or a border is found that crosses an edge.
-void CellShares::settle(Corners of, double part, int begin, int end)
-{
-	const double* values4[4] = {row(of[0]) + planes, row(of[1]) + planes, row(of[2]) + planes, row(of[3]) + planes};
+	const auto apart = [&](int a, int b) {
+		const AtCorners &one = powers[a], &other = powers[b];
+		return AtCorners{other[0] - one[0], other[1] - one[1], other[2] - one[2], other[3] - one[3]};
+	};
 	int rival = -1;
-	for (int k = begin + 1; k < end;) {
-		const int a = active[begin], b = active[k];
-		bool aWins = false, bWins = false;
-		for (const double* v : values4) {
-			aWins |= v[a] < v[b];
-			bWins |= v[b] < v[a];
-		}
+	for (std::size_t k = begin + 1; k < active.size();) {
+		const auto [bWins, aWins] = signs(part, apart(active[begin], active[k]));
 		if (aWins && bWins) {
-			if (rival < 0) rival = k;
+			if (rival < 0) rival = static_cast<int>(k);
 			++k;
 			continue;
 		}
 		if (bWins) {
-			active[begin] = b;
-			active[k] = active[--end];
-			rival = -1;
-			k = begin + 1; // those that stood up to the former first meet this one
-		} else
-			active[k] = active[--end];
+			active[begin] = active[k];
+			rival = -1; // those that stood up to the former first meet this one
+		}
+		active[k] = active.back();
+		active.pop_back();
+		if (bWins) k = begin + 1;
 	}
 	const int a = active[begin];
-	if (rival < 0 || part < negligible) {
-		owned[a] += part;
+	if (rival < 0) {
+		owned[a] += part.fraction();
 		return;
 	}
-	const int b = active[rival];
-	int mine = 0, theirs = 0;
-	for (int k = 0; k < 4; ++k) {
-		const double* v = values4[k];
-		if (v[a] < v[b]) mine = k;
-		if (v[b] < v[a]) theirs = k;
+	const int b = active[rival], end = static_cast<int>(active.size());
+	ConvexPart& half = spare(depth);
+	for (int winner : {a, b}) {
+		const int loser = winner == a ? b : a;
+		signs(part, apart(winner, loser));
+		half.clip(part, sides);
+		active.push_back(winner);
+		for (int k = begin; k < end; ++k)
+			if (active[k] != a && active[k] != b) active.push_back(active[k]);
+		settle(half, end, depth + 1);
+		active.resize(end);
 	}
-	const double ahead = values4[mine][b] - values4[mine][a], behind = values4[theirs][a] - values4[theirs][b], share = ahead / (ahead + behind);
-	const int kept = corners, middle = between({mine, theirs, share}, of);
-	row(middle)[planes + b] = row(middle)[planes + a]; // on the border exactly: this edge is not divided again
-	const int list = static_cast<int>(active.size());
-	const auto half = [&](int replaced, double fraction) {
-		for (int k = begin; k < end; ++k) active.push_back(active[k]);
-		Corners child = of;
-		child[replaced] = middle;
-		settle(child, part * fraction, list, static_cast<int>(active.size()));
-		active.resize(list);
-	};
-	half(theirs, share);
-	half(mine, 1 - share);
-	corners = kept;
 }
 
 } // namespace hexmembrane
