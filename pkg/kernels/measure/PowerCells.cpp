@@ -54,10 +54,11 @@ void PowerCells::listFeet(std::vector<PowerSite>& sites)
 		for (int i = 0; i < grainCount; ++i) {
 			const Vec3 x = sites[i].centre;
 			if (std::abs(x[2] - face) > sites[i].radius + 2 * largest) continue;
-			feet.emplace_back(i, side);
+			footOf.push_back(i);
 			sites.push_back({Vec3(x[0], x[1], 2 * face - x[2]), sites[i].radius});
 			place.emplace_back(x[0], x[1], face);
 		}
+		if (side < 0) lowerFeet = footOf.size();
 	}
 }
 
@@ -96,7 +97,7 @@ void PowerCells::share(const std::vector<PowerSite>& sites, const PowerTriangula
 	CellShares cells(sites, all.starts, all.neighbours, low, high);
 	std::vector<int> at(place.size(), 0);
 	for (int i = 0; i < grainCount; ++i) at[i] = i;
-	for (std::size_t f = 0; f < feet.size(); ++f) at[grainCount + tubeCount + f] = feet[f].first;
+	std::copy(footOf.begin(), footOf.end(), at.begin() + grainCount + tubeCount);
 	// the walk of a tube's point starts at a grain beside it
 	for (const auto& t : mesh)
 		for (int grain : t.corners)
@@ -139,7 +140,7 @@ std::vector<Mat3> PowerCells::gradients(const std::vector<Vec3>& grains, const s
 	if (int(inner.size()) != tubeCount) reject("inner", int(inner.size()), "is not the number of the tube's points", std::to_string(tubeCount) + " displacements");
 	std::vector<Vec3> moved = grains;
 	moved.insert(moved.end(), inner.begin(), inner.end());
-	for (const auto& [grain, side] : feet) moved.emplace_back(grains[grain][0], grains[grain][1], side < 0 ? bottom : top);
+	for (std::size_t f = 0; f < footOf.size(); ++f) moved.emplace_back(grains[footOf[f]][0], grains[footOf[f]][1], f < lowerFeet ? bottom : top);
 	std::vector<Mat3> integral(grainCount, Mat3::Zero());
 	for (std::size_t t = 0; t < mesh.size(); ++t) {
 		const auto& c = mesh[t].corners;

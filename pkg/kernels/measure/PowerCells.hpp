@@ -52,6 +52,8 @@ public:
 
 	const std::vector<Vec3>& corners() const { return place; }
 	const std::vector<Tetrahedron>& tetrahedra() const { return mesh; }
+	/// The grain of each foot.
+	const std::vector<int>& feet() const { return footOf; }
 	/// Tetrahedra that were filled in beside the tube.
 	int filled() const { return filledIn; }
 
@@ -67,7 +69,8 @@ private:
 	int grainCount, tubeCount, filledIn = 0;
 	double low, high;
 	std::vector<Vec3> place;
-	std::vector<std::pair<int, int>> feet; // grain, -1 or 1
+	std::vector<int> footOf; // grains, those at the lower face first
+	std::size_t lowerFeet = 0;
 	std::vector<Tetrahedron> mesh;
 	std::vector<int> shareStarts; // by tetrahedron
 	std::vector<CellShares::Share> shares;
