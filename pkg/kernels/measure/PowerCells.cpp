@@ -36,11 +36,16 @@ PowerCells::PowerCells(const std::vector<PowerSite>& grains, const Enclosure& en
 	place.insert(place.end(), enclosure.inner.begin(), enclosure.inner.end());
 	listFeet(sites);
 	const PowerTriangulation all = triangulate(sites, grainCount);
-	for (int i = 0; i < grainCount && grainCount > 1; ++i)
-		if (all.starts[i] == all.starts[i + 1])
-			fail("radii[" + std::to_string(i) + "]", grains[i].radius, "has no cell: the grain lies within another one", "leave the grain out");
+	const auto requireCells = [&](auto&& has) {
+		for (int i = 0; i < grainCount; ++i)
+			if (!has(i))
+				fail("radii[" + std::to_string(i) + "]", grains[i].radius, "has no cell: the grain lies within another one or outside",
+				     "leave the grain out");
+	};
+	requireCells([&](int i) { return grainCount == 1 || all.starts[i] < all.starts[i + 1]; });
 	select(all, enclosure);
 	share(sites, all);
+	requireCells([&](int i) { return volume[i] > 0; });
 	listNeighbours();
 }
 
