@@ -22,7 +22,7 @@ boost::python::object tensors(const vector<Matrix3r>& each, const vector<Real>& 
 	rows.reserve(9 * each.size());
 	for (size_t g = 0; g < each.size(); ++g)
 		for (int i = 0; i < 3; ++i)
-			for (int j = 0; j < 3; ++j) rows.push_back(each[g](i, j) / divisors[g]);
+			for (int j = 0; j < 3; ++j) rows.push_back(divisors[g] > 0 ? each[g](i, j) / divisors[g] : NaN);
 	return numpyArray(rows, "f8", 9).attr("reshape")(-1, 3, 3);
 }
 
@@ -65,7 +65,7 @@ LocalMeasure::Instant LocalMeasure::look(const Scene& scene) const
 	now.faces = soil->faces(scene);
 	enclosure.bottom = now.faces[0];
 	enclosure.top = now.faces[1];
-	now.cells = named("LocalMeasure", {{"grains", "soil"}, {"radii", "soil: radius of grain "}, {"triangles", "soil.membrane: particle"}},
+	now.cells = named("LocalMeasure", {{"grains", "soil"}, {"triangles", "soil.membrane: particle"}},
 	                  [&] { return std::make_shared<const hexmembrane::PowerCells>(now.grains, enclosure); });
 	return now;
 }
@@ -102,7 +102,8 @@ void LocalMeasure::addStrain(const Instant& now, boost::python::dict& values) co
 	vector<Real> volumetric, deviatoric;
 	vector<Vector3r> rotation;
 	for (size_t g = 0; g < gradients.size(); ++g) {
-		const auto found = hexmembrane::invariantsOf(gradients[g] / cells.volumes()[g]);
+		const Real volume = cells.volumes()[g];
+		const auto found = hexmembrane::invariantsOf(gradients[g] / (volume > 0 ? volume : NaN));
 		volumetric.push_back(found.volumetric);
 		deviatoric.push_back(found.deviatoric);
 		rotation.push_back(found.rotation);

@@ -39,8 +39,8 @@ private:
 		"Cells: a point between the platens' faces, inside the membrane's inner surface, belongs to the grain with the least power, $|x-c|^2-r^2$. The cells' volumes add up to :yref:`enclosedVolume<HexMembrane.enclosedVolume>`.\n\n"
 		"Strain: displacements between two states are linear in the tetrahedra of a mesh of grains, points of the inner surface and projections of the grains on the platens' faces (a power triangulation, see ``kernels/measure/PowerCells.hpp``); the gradient is averaged over the grain's cell in the first state. Weighted with those volumes, the mean is the integral of $u_i n_j$ over the boundary.\n\n"
 		"Stress: $V\\sigma_{ij}=\\sum F_i l_j$ over the grain's contacts, compression positive, $F$ the force on the partner, $l$ from the grain's centre to the contact point. Weighted with the volumes, the mean is the 'whole' of :yref:`SoilMeasure.stress`.\n\n"
-		"Contact forces are those of the last step. The reference state is not saved with the scene.\n\n"
-		"Errors: ``ValueError`` for no soil or a soil without a membrane, ``RuntimeError`` for a membrane that ends between the faces, a grain within another one, grains that differ from the reference state's.\n\n"
+		"A grain without a part of the volume (it escaped, or lies within others) has a cell of 0 and NaN for what is divided by it. Contact forces are those of the last step. The reference state is not saved with the scene.\n\n"
+		"Errors: ``ValueError`` for no soil or a soil without a membrane, ``RuntimeError`` for a membrane that ends between the faces, grains that differ from the reference state's.\n\n"
 		"Example::\n\n\tlocal=LocalMeasure(soil=SoilMeasure(membrane=m,bottomPlaten=0,topPlaten=1))\n\tlocal.setReference()\n\tO.run(10000,True)\n\tgrains=local.measure(advance=True)\n\tvolumetric=grains['volumetric']",
 		((shared_ptr<SoilMeasure>,soil,,,"Membrane and platens that the grains are in. Required."))
 		,/*ctor*/,

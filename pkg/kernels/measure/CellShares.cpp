@@ -90,8 +90,9 @@ void ConvexPart::clip(const ConvexPart& of, const std::vector<double>& side)
 	}
 }
 
-CellShares::CellShares(const std::vector<PowerSite>& theSites, const std::vector<int>& theStarts, const std::vector<int>& theNeighbours, double low, double high)
-        : sites(theSites), starts(theStarts), neighbours(theNeighbours), bottom(low), top(high), seenBy(theStarts.size() - 1, 0)
+CellShares::CellShares(const std::vector<PowerSite>& theSites, const std::vector<int>& theStarts, const std::vector<int>& theNeighbours, double low,
+                       double high)
+    : sites(theSites), starts(theStarts), neighbours(theNeighbours), bottom(low), top(high), seenBy(theStarts.size() - 1, 0)
 {
 }
 

@@ -62,14 +62,14 @@ private:
 	double bottom, top;
 
 	// of the tetrahedron at hand
-	std::vector<int> candidates;    // sites whose cells may reach in
-	std::vector<AtCorners> powers;  // theirs
-	std::vector<int> seenBy;        // by site: the last tetrahedron that looked at it
+	std::vector<int> candidates;   // sites whose cells may reach in
+	std::vector<AtCorners> powers; // theirs
+	std::vector<int> seenBy;       // by site: the last tetrahedron that looked at it
 	int turn = 0;
-	std::vector<int> active;        // stacked lists of candidates
-	std::vector<double> owned;      // by candidate
+	std::vector<int> active;   // stacked lists of candidates
+	std::vector<double> owned; // by candidate
 	std::vector<double> sides;
-	std::deque<ConvexPart> spares;  // by depth: parts keep their memory
+	std::deque<ConvexPart> spares; // by depth: parts keep their memory
 	const ConvexPart unit = ConvexPart::whole();
 };
 

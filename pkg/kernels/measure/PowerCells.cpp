@@ -5,6 +5,7 @@
 #include "kernels/measure/FacetCycles.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hexmembrane {
 
@@ -19,7 +20,8 @@ void check(const std::vector<PowerSite>& grains, const Enclosure& enclosure)
 	for (std::size_t i = 0; i < grains.size(); ++i) requirePositive("radii[" + std::to_string(i) + "]", grains[i].radius, "m");
 	requirePositive("radius", enclosure.radius, "m");
 	requireFinite("bottom", enclosure.bottom, "m");
-	if (!(enclosure.bottom < enclosure.top)) reject("bottom", enclosure.bottom, "not below top = " + formatNumber(enclosure.top), "the lower face's height first");
+	if (!(enclosure.bottom < enclosure.top))
+		reject("bottom", enclosure.bottom, "not below top = " + formatNumber(enclosure.top), "the lower face's height first");
 	if (enclosure.centres.size() != enclosure.inner.size())
 		reject("inner", int(enclosure.inner.size()), "is not the number of centres", "one point of the surface for each sphere");
 }
@@ -27,7 +29,7 @@ void check(const std::vector<PowerSite>& grains, const Enclosure& enclosure)
 } // namespace
 
 PowerCells::PowerCells(const std::vector<PowerSite>& grains, const Enclosure& enclosure)
-        : grainCount(static_cast<int>(grains.size())), tubeCount(static_cast<int>(enclosure.inner.size())), low(enclosure.bottom), high(enclosure.top)
+    : grainCount(static_cast<int>(grains.size())), tubeCount(static_cast<int>(enclosure.inner.size())), low(enclosure.bottom), high(enclosure.top)
 {
 	check(grains, enclosure);
 	std::vector<PowerSite> sites = grains;
@@ -36,16 +38,8 @@ PowerCells::PowerCells(const std::vector<PowerSite>& grains, const Enclosure& en
 	place.insert(place.end(), enclosure.inner.begin(), enclosure.inner.end());
 	listFeet(sites);
 	const PowerTriangulation all = triangulate(sites, grainCount);
-	const auto requireCells = [&](auto&& has) {
-		for (int i = 0; i < grainCount; ++i)
-			if (!has(i))
-				fail("radii[" + std::to_string(i) + "]", grains[i].radius, "has no cell: the grain lies within another one or outside",
-				     "leave the grain out");
-	};
-	requireCells([&](int i) { return grainCount == 1 || all.starts[i] < all.starts[i + 1]; });
 	select(all, enclosure);
 	share(sites, all);
-	requireCells([&](int i) { return volume[i] > 0; });
 	listNeighbours();
 }
 
@@ -101,14 +95,18 @@ void PowerCells::share(const std::vector<PowerSite>& sites, const PowerTriangula
 {
 	CellShares cells(sites, all.starts, all.neighbours, low, high);
 	std::vector<int> at(place.size(), 0);
-	for (int i = 0; i < grainCount; ++i) at[i] = i;
-	std::copy(footOf.begin(), footOf.end(), at.begin() + grainCount + tubeCount);
+	// A walk cannot start at a grain within others, which has no neighbours.
+	const auto isAlone = [&](int grain) { return all.starts[grain] == all.starts[grain + 1]; };
+	int start = 0;
+	while (start + 1 < grainCount && isAlone(start)) ++start;
+	for (int i = 0; i < grainCount; ++i) at[i] = isAlone(i) ? start : i;
+	for (std::size_t f = 0; f < footOf.size(); ++f) at[grainCount + tubeCount + f] = at[footOf[f]];
 	// the walk of a tube's point starts at a grain beside it
 	for (const auto& t : mesh)
 		for (int grain : t.corners)
 			if (grain < grainCount)
 				for (int corner : t.corners)
-					if (isTube(corner)) at[corner] = grain;
+					if (isTube(corner)) at[corner] = at[grain];
 	for (std::size_t c = 0; c < place.size(); ++c) at[c] = cells.cellAt(place[c], at[c]);
 	volume.assign(grainCount, 0);
 	shareStarts.assign(1, 0);
@@ -120,29 +118,33 @@ void PowerCells::share(const std::vector<PowerSite>& sites, const PowerTriangula
 		for (std::size_t s = shareStarts.back(); s < shares.size(); ++s) volume[shares[s].site] += shares[s].fraction * whole;
 		shareStarts.push_back(static_cast<int>(shares.size()));
 	}
+	// what parts that cancel leave of an escaped grain's cell is rounding
+	for (int i = 0; i < grainCount; ++i)
+		if (std::abs(volume[i]) < 1e-9 * std::pow(sites[i].radius, 3)) volume[i] = 0;
 }
 
 void PowerCells::listNeighbours()
 {
-	std::vector<std::pair<int, int>> pairs;
+	std::vector<std::vector<int>> beside(grainCount);
 	for (const auto& t : mesh)
 		for (int a : t.corners)
-			for (int b : t.corners)
-				if (a != b && a < grainCount && b < grainCount) pairs.emplace_back(a, b);
-	std::sort(pairs.begin(), pairs.end());
-	pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-	firstNeighbour.assign(grainCount + 1, 0);
-	for (const auto& pair : pairs) {
-		++firstNeighbour[pair.first + 1];
-		meshNeighbour.push_back(pair.second);
+			for (int b : t.corners) {
+				if (a == b || a >= grainCount || b >= grainCount) continue;
+				if (std::find(beside[a].begin(), beside[a].end(), b) == beside[a].end()) beside[a].push_back(b);
+			}
+	firstNeighbour.assign(1, 0);
+	for (const auto& list : beside) {
+		meshNeighbour.insert(meshNeighbour.end(), list.begin(), list.end());
+		firstNeighbour.push_back(static_cast<int>(meshNeighbour.size()));
 	}
-	for (int i = 0; i < grainCount; ++i) firstNeighbour[i + 1] += firstNeighbour[i];
 }
 
 std::vector<Mat3> PowerCells::gradients(const std::vector<Vec3>& grains, const std::vector<Vec3>& inner, double bottom, double top) const
 {
-	if (int(grains.size()) != grainCount) reject("grains", int(grains.size()), "is not the number of grains", std::to_string(grainCount) + " displacements");
-	if (int(inner.size()) != tubeCount) reject("inner", int(inner.size()), "is not the number of the tube's points", std::to_string(tubeCount) + " displacements");
+	if (int(grains.size()) != grainCount)
+		reject("grains", int(grains.size()), "is not the number of grains", std::to_string(grainCount) + " displacements");
+	if (int(inner.size()) != tubeCount)
+		reject("inner", int(inner.size()), "is not the number of the tube's points", std::to_string(tubeCount) + " displacements");
 	std::vector<Vec3> moved = grains;
 	moved.insert(moved.end(), inner.begin(), inner.end());
 	for (std::size_t f = 0; f < footOf.size(); ++f) moved.emplace_back(grains[footOf[f]][0], grains[footOf[f]][1], f < lowerFeet ? bottom : top);
@@ -152,8 +154,8 @@ std::vector<Mat3> PowerCells::gradients(const std::vector<Vec3>& grains, const s
 		const Vec3 b = place[c[1]] - place[c[0]], d = place[c[2]] - place[c[0]], e = place[c[3]] - place[c[0]];
 		// volume times gradient has no division: a flat tetrahedron is no special case
 		const Mat3 whole = mesh[t].times / 6. *
-		        ((moved[c[1]] - moved[c[0]]) * d.cross(e).transpose() + (moved[c[2]] - moved[c[0]]) * e.cross(b).transpose() +
-		         (moved[c[3]] - moved[c[0]]) * b.cross(d).transpose());
+		                   ((moved[c[1]] - moved[c[0]]) * d.cross(e).transpose() + (moved[c[2]] - moved[c[0]]) * e.cross(b).transpose() +
+		                    (moved[c[3]] - moved[c[0]]) * b.cross(d).transpose());
 		for (int s = shareStarts[t]; s < shareStarts[t + 1]; ++s) integral[shares[s].site] += shares[s].fraction * whole;
 	}
 	return integral;

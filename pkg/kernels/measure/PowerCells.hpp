@@ -33,11 +33,10 @@ public:
 	};
 
 	/// \param grains centres and radii, one at least
-	/// \throws FieldError for input that is not finite or has no volume; FieldFailure for a grain without a cell (it lies within another one) and for a
-	/// tube that does not reach the faces
+	/// \throws FieldError for input that is not finite or has no volume; FieldFailure for a tube that does not reach the faces
 	PowerCells(const std::vector<PowerSite>& grains, const Enclosure& enclosure);
 
-	/// Volumes of the grains' cells (m3).
+	/// Volumes of the grains' cells (m3). That of a grain within others, or far outside, is 0.
 	const std::vector<double>& volumes() const { return volume; }
 
 	/// Integral over each cell of the displacement gradient, entry (i, j) du_i/dx_j (m3). Linear in each tetrahedron; at a foot sideways the grain's displacement,
