@@ -23,7 +23,7 @@ private:
 		vector<hexmembrane::PowerSite> grains;
 		vector<Vector3r> inner;
 		std::array<Real, 2> faces;
-		shared_ptr<const hexmembrane::PowerCells> cells;
+		std::shared_ptr<const hexmembrane::PowerCells> cells;
 	};
 	Instant look(const Scene& scene) const;
 	//! Of each grain, times its cell's volume (N m).
@@ -31,7 +31,7 @@ private:
 	void addStrain(const Instant& now, boost::python::dict& values) const;
 	void requireSoil(const Scene& scene) const;
 
-	shared_ptr<const Instant> reference;
+	std::shared_ptr<const Instant> reference;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(LocalMeasure,Serializable,
