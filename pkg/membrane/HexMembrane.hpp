@@ -46,6 +46,8 @@ public:
 	Real transmitted(StepView& view, int group, const string& who) const;
 	//! Volumes (m3) inside the inner surface between rising heights, one less than heights, with the particles at x.
 	vector<Real> volumesBetween(const vector<Vector3r>& x, const vector<Real>& heights) const;
+	//! Points of the inner surface (m), one a particle, with the particles at x.
+	vector<Vector3r> innerPoints(const vector<Vector3r>& x) const { return surfacePoints("inner", x); }
 	//! The particles' places in this instant.
 	vector<Vector3r> positionsIn(StepView& view) const;
 	//! Mean pressure (Pa) that forces on the particles (N, positive inwards) are over the inner area of a group (0: all of groups 2 and 3).
