@@ -11,6 +11,7 @@ namespace hexmembrane {
 
 namespace {
 
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double ballVolume(double radius) { return 4. / 3 * M_PI * radius * radius * radius; }
@@ -80,6 +81,19 @@ double lensVolume(double radius1, double radius2, double distance)
 	return M_PI * (sum - distance) * (sum - distance) * (distance * distance + 2 * distance * sum - 3 * difference * difference) / (12 * distance);
 }
 
+void SphereRegions::ContactSums::addMoment(double share, const ContactSums& other)
+{
+	for (int a = 0; a < 9; ++a) moment[a] += share * other.moment[a];
+}
+
+void SphereRegions::ContactSums::addPoint(const ContactSums& other)
+{
+	overlap += other.overlap;
+	active += other.active;
+	compressed += other.compressed;
+	sliding += other.sliding;
+}
+
 SphereRegions::SphereRegions(std::vector<MeasuredGrain> unsorted, std::vector<MeasuredContact> contacts)
 {
 	if (unsorted.empty()) reject("grains", 0, "are none", "an assembly of one grain at least");
@@ -108,18 +122,26 @@ SphereRegions::SphereRegions(std::vector<MeasuredGrain> unsorted, std::vector<Me
 	points.clear();
 	for (const MeasuredContact& c : contacts) points.push_back(0.5 * (c.start + c.end));
 	std::vector<int> order;
-	linkGrid = sortedGrid(points, order);
+	contactGrid = sortedGrid(points, order);
 	for (const int i : order) {
 		const MeasuredContact& c = contacts[i];
 		const bool grainsTouch = c.first >= 0 && c.second >= 0;
 		const Vec3 branch = c.end - c.start;
-		const double half = 0.5 * branch.norm(), tangential = std::sqrt(std::max(0., c.force.squaredNorm() - c.normalForce * c.normalForce));
-		// the law cuts the tangential force to the limit with another rounding
-		const double limit = (1 - 1e-6) * c.friction * c.normalForce, slides = std::isnan(limit) ? nan : tangential >= limit;
-		links.push_back({points[i], half, c.start, branch, c.point, c.force * branch.transpose(),
-		                 grainsTouch ? lensVolume(unsorted[c.first].radius, unsorted[c.second].radius, 2 * half) : 0, slides, c.normalForce != 0,
-		                 grainsTouch && c.normalForce > 0});
-		longestHalf = std::max(longestHalf, half);
+		const double length = branch.norm(), tangential = std::sqrt(std::max(0., c.force.squaredNorm() - c.normalForce * c.normalForce));
+		reaches.push_back({points[i], std::max(0.5 * length, (c.point - points[i]).norm())});
+		longestReach = std::max(longestReach, reaches.back().radius);
+		branches.push_back({c.start, branch, c.point});
+		ContactSums sum{};
+		for (int a = 0; a < 9; ++a) sum.moment[a] = c.force[a / 3] * branch[a % 3];
+		sum.active = c.normalForce != 0;
+		if (grainsTouch) sum.overlap = lensVolume(unsorted[c.first].radius, unsorted[c.second].radius, length);
+		if (grainsTouch && c.normalForce > 0) {
+			sum.compressed = 1;
+			// the law cuts the tangential force to the limit with another rounding
+			const double limit = (1 - 1e-6) * c.friction * c.normalForce;
+			sum.sliding = std::isnan(limit) ? nan : tangential >= limit;
+		}
+		sums.push_back(sum);
 	}
 }
 
@@ -163,8 +185,14 @@ RegionMeasures SphereRegions::measure(const std::vector<Vec3>& centres, const st
 	const std::size_t count = centres.size(), binCount = bins.empty() ? 0 : diameters.size() - 1;
 	RegionMeasures found;
 	found.sizes.assign(count * binCount, 0);
-	std::vector<int> inside;
-	for (std::size_t k = 0; k < count; ++k) {
+	found.grains.resize(count);
+	found.contacts.resize(count);
+	for (auto* numbers : {&found.porosity, &found.coordination, &found.sliding}) numbers->assign(count, nan);
+	for (auto* tensors : {&found.stress, &found.velocityGradient}) tensors->assign(count, Mat3::Constant(nan));
+	found.velocity.assign(count, Vec3::Constant(nan));
+	std::vector<int> inside, order;
+	sortedGrid(centres, order); // neighbours one after the other read the same memory
+	for (const int k : order) {
 		const Vec3 centre = centres[k];
 		const double radius = radii[k], square = radius * radius, whole = ballVolume(radius);
 		double solid = 0;
@@ -183,36 +211,35 @@ RegionMeasures SphereRegions::measure(const std::vector<Vec3>& centres, const st
 			}
 		});
 
-		Mat3 sum = Mat3::Zero();
-		int branches = 0, contacts = 0, counted = 0;
-		double sliding = 0;
-		if (linkGrid)
-			linkGrid->forEachWithin(centre, radius + longestHalf, [&](int i) {
-				const Link& link = links[i];
-				const double apart = (link.middle - centre).squaredNorm(), outer = radius + link.half, inner = radius - link.half;
+		ContactSums sum{};
+		int met = 0;
+		if (contactGrid)
+			contactGrid->forEachWithin(centre, radius + longestReach, [&](int i) {
+				const Reach& reach = reaches[i];
+				const double apart = (reach.middle - centre).squaredNorm(), outer = radius + reach.radius, inner = radius - reach.radius;
 				if (apart >= outer * outer) return;
-				const double share = inner > 0 && apart <= inner * inner ? 1 : shareInside(link.start - centre, link.branch, radius);
-				if (share > 0) {
-					sum += share * link.moment;
-					++branches;
+				if (inner > 0 && apart <= inner * inner) {
+					++met;
+					sum.addMoment(1, sums[i]);
+					sum.addPoint(sums[i]);
+					return;
 				}
-				if ((link.point - centre).squaredNorm() >= square) return;
-				solid -= link.overlap;
-				contacts += link.active;
-				if (!link.counts) return;
-				++counted;
-				sliding += link.slides;
+				const Branch& branch = branches[i];
+				const double share = shareInside(branch.start - centre, branch.whole, radius);
+				met += share > 0;
+				sum.addMoment(share, sums[i]);
+				if ((branch.point - centre).squaredNorm() < square) sum.addPoint(sums[i]);
 			});
+		solid -= sum.overlap;
 
-		found.grains.push_back(int(inside.size()));
-		found.contacts.push_back(contacts);
-		found.porosity.push_back(1 - solid / whole);
-		found.coordination.push_back(inside.empty() ? nan : double(touching) / double(inside.size()));
-		found.sliding.push_back(counted > 0 ? sliding / counted : nan);
-		found.stress.push_back(branches > 0 ? Mat3(sum / whole) : Mat3::Constant(nan));
-		found.velocity.push_back(Vec3::Constant(nan));
-		found.velocityGradient.push_back(Mat3::Constant(nan));
-		if (!inside.empty()) fitVelocities(grains, inside, found.velocity.back(), found.velocityGradient.back());
+		found.grains[k] = int(inside.size());
+		found.contacts[k] = int(sum.active);
+		found.porosity[k] = 1 - solid / whole;
+		if (sum.compressed > 0) found.sliding[k] = sum.sliding / sum.compressed;
+		if (met > 0) found.stress[k] = Eigen::Map<const RowMajor>(sum.moment) / whole;
+		if (inside.empty()) continue;
+		found.coordination[k] = double(touching) / double(inside.size());
+		fitVelocities(grains, inside, found.velocity[k], found.velocityGradient[k]);
 	}
 	return found;
 }

@@ -78,15 +78,22 @@ public:
 	RegionMembers members(const std::vector<Vec3>& centres, const std::vector<double>& radii) const;
 
 private:
-	/// What is added up of a contact.
-	struct Link {
-		Vec3 middle; // of the branch
-		double half; // of its length
-		Vec3 start, branch, point;
-		Mat3 moment;    // F (x) l
-		double overlap; // volume of the lens
-		double slides;  // 0, 1 or NaN
-		bool active, counts; // counts: for the share that slides
+	/// What is added up of the contacts that lie inside whole.
+	struct ContactSums {
+		double moment[9]; // F (x) l, row by row
+		double overlap;   // volume of the lens
+		double active, compressed, sliding; // numbers of contacts; compressed: of two grains; NaN: not known
+
+		void addMoment(double share, const ContactSums& other);
+		void addPoint(const ContactSums& other);
+	};
+	/// A ball that a contact's branch and point lie in.
+	struct Reach {
+		Vec3 middle;
+		double radius;
+	};
+	struct Branch {
+		Vec3 start, whole, point;
 	};
 	void requireRegions(const std::vector<Vec3>& centres, const std::vector<double>& radii) const;
 	std::vector<int> binsOf(const std::vector<double>& diameters) const;
@@ -95,10 +102,12 @@ private:
 	std::vector<double> volume;
 	std::vector<int> active; // contacts of each grain
 	std::vector<int> given;  // index of each in the list that was given
-	std::vector<Link> links;
-	std::unique_ptr<CellGrid> grainGrid, linkGrid;
+	std::vector<Reach> reaches;
+	std::vector<Branch> branches;
+	std::vector<ContactSums> sums;
+	std::unique_ptr<CellGrid> grainGrid, contactGrid;
 	Vec3 low, high; // of the box round the grains
-	double largestRadius = 0, longestHalf = 0;
+	double largestRadius = 0, longestReach = 0;
 };
 
 } // namespace hexmembrane
