@@ -113,7 +113,8 @@ TEST(SphereRegions, latticesHaveTheirPorosityAndCoordination)
 		const SphereRegions regions(grains, contactsOf(grains));
 		const auto places = lattice.places(300);
 		const auto found = regions.measure(places, std::vector<double>(places.size(), 2.5));
-		printf("por %g\n",mean(found.porosity)-lattice.porosity());EXPECT_NEAR(mean(found.porosity), lattice.porosity(), 1e-5);
+		printf("por %g\n", mean(found.porosity) - lattice.porosity());
+		EXPECT_NEAR(mean(found.porosity), lattice.porosity(), 1e-5);
 		for (const double z : found.coordination) EXPECT_EQ(z, coordination);
 	}
 }
@@ -180,7 +181,8 @@ TEST(SphereRegions, stressOfALatticeIsTheOneThatIsApplied)
 	const SphereRegions regions(grains, contactsOf(grains, stress)); // F = sigma n on a face of area 1
 	const auto places = cubic.places(5000);
 	const auto found = regions.measure(places, std::vector<double>(places.size(), 3));
-printf("str %g\n",(mean(found.stress) - stress).norm()/stress.norm());	EXPECT_LT((mean(found.stress) - stress).norm(), 1e-4 * stress.norm());
+	printf("str %g\n", (mean(found.stress) - stress).norm() / stress.norm());
+	EXPECT_LT((mean(found.stress) - stress).norm(), 1e-4 * stress.norm());
 	for (const Mat3& one : found.stress) EXPECT_LT((one - stress).norm(), 0.05 * stress.norm()) << "single places scatter";
 	EXPECT_EQ(found.stress[0](0, 1) * stress(1, 1), found.stress[0](1, 1) * stress(0, 1)) << "row: force, column: branch";
 }

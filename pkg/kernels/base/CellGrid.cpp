@@ -38,7 +38,8 @@ int CellGrid::cellOf(double coordinate, int axis) const
 // Along one axis, never too large: cells at the border reach to infinity, and a point beside a border between cells may have been rounded across it.
 double CellGrid::distanceToCells(double coordinate, int cell, int axis) const
 {
-	const double place = (coordinate - origin[axis]) * perLength[axis], below = cell > 0 ? cell - place : 0, above = cell + 1 < count[axis] ? place - cell - 1 : 0;
+	const double place = (coordinate - origin[axis]) * perLength[axis], below = cell > 0 ? cell - place : 0,
+	             above = cell + 1 < count[axis] ? place - cell - 1 : 0;
 	const double cells = std::max(below, above) - 1e-6;
 	return cells > 0 ? cells / perLength[axis] : 0;
 }

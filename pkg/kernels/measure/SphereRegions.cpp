@@ -168,7 +168,8 @@ std::vector<int> SphereRegions::binsOf(const std::vector<double>& diameters) con
 	for (std::size_t k = 0; k < diameters.size(); ++k) {
 		requireNonNegative("diameters[" + std::to_string(k) + "]", diameters[k], "m");
 		if (k > 0 && !(diameters[k] > diameters[k - 1]))
-			reject("diameters[" + std::to_string(k) + "]", diameters[k], "is not above the one before", "give the borders of the bins rising, in m");
+			reject("diameters[" + std::to_string(k) + "]", diameters[k], "is not above the one before",
+			       "give the borders of the bins rising, in m");
 	}
 	std::vector<int> bins;
 	for (const MeasuredGrain& g : grains) {

@@ -29,15 +29,15 @@ struct MeasuredContact {
 
 /// What the regions hold, one entry a region; NaN where nothing tells.
 struct RegionMeasures {
-	std::vector<int> grains;         ///< with their centres inside
-	std::vector<int> contacts;       ///< active ones with their points inside
-	std::vector<double> porosity;    ///< 1: nothing inside (-)
-	std::vector<double> coordination; ///< NaN: no centre inside (-)
-	std::vector<double> sliding;     ///< share of the contacts; NaN: none of two grains in compression inside, or one of unknown friction (-)
-	std::vector<Mat3> stress;        ///< compression positive; NaN: no branch inside (Pa)
-	std::vector<Vec3> velocity;      ///< mean of the grains with their centres inside; NaN: none (m/s)
+	std::vector<int> grains;            ///< with their centres inside
+	std::vector<int> contacts;          ///< active ones with their points inside
+	std::vector<double> porosity;       ///< 1: nothing inside (-)
+	std::vector<double> coordination;   ///< NaN: no centre inside (-)
+	std::vector<double> sliding;        ///< share of the contacts; NaN: none of two grains in compression inside, or one of unknown friction (-)
+	std::vector<Mat3> stress;           ///< compression positive; NaN: no branch inside (Pa)
+	std::vector<Vec3> velocity;         ///< mean of the grains with their centres inside; NaN: none (m/s)
 	std::vector<Mat3> velocityGradient; ///< dv_i/dx_j, extension positive; NaN: less than four grains inside, or all in a plane (1/s)
-	std::vector<double> sizes;       ///< volumes of grains inside by bins of diameter, one row a region (m3)
+	std::vector<double> sizes;          ///< volumes of grains inside by bins of diameter, one row a region (m3)
 };
 
 /// Grains with their centres inside: those of region k are grain[start[k]] .. grain[start[k + 1] - 1], ascending.
@@ -80,8 +80,8 @@ public:
 private:
 	/// What is added up of the contacts that lie inside whole.
 	struct ContactSums {
-		double moment[9]; // F (x) l, row by row
-		double overlap;   // volume of the lens
+		double moment[9];                   // F (x) l, row by row
+		double overlap;                     // volume of the lens
 		double active, compressed, sliding; // numbers of contacts; compressed: of two grains; NaN: not known
 
 		void addMoment(double share, const ContactSums& other);
