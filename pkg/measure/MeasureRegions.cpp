@@ -26,11 +26,8 @@ Regions regionsFrom(const boost::python::object& centres, const boost::python::o
 	Regions found;
 	const vector<Real> rows = numbersOf(centres, "centres", 3);
 	for (size_t i = 0; i < rows.size(); i += 3) found.centres.emplace_back(rows[i], rows[i + 1], rows[i + 2]);
-	const boost::python::extract<Real> one(radii);
-	if (one.check())
-		found.radii.assign(found.centres.size(), one());
-	else
-		found.radii = numbersOf(radii, "radii");
+	found.radii = numbersOf(radii, "radii");
+	if (found.radii.size() == 1) found.radii.resize(found.centres.size(), found.radii[0]);
 	return found;
 }
 
@@ -116,7 +113,7 @@ boost::python::tuple MeasureRegions::members(const boost::python::object& centre
 
 boost::python::object MeasureRegions::grid(const Vector3r& low, const Vector3r& high, Real spacing)
 {
-	return named("MeasureRegions", {}, [&] {
+	return named("MeasureRegions.grid", {{"cellSize", "spacing"}}, [&] {
 		const hexmembrane::CellGrid cells(low, high, spacing);
 		const auto& count = cells.cells();
 		vector<Vector3r> centres;
