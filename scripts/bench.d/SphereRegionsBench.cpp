@@ -64,7 +64,7 @@ void sphereRegions(benchmark::State& state)
 	state.counters["contacts"] = contacts;
 	state.counters["grainsInside"] = grains / double(centres.size());
 }
-BENCHMARK(sphereRegions)->ArgName("diameters")->Arg(3)->Unit(benchmark::kMillisecond);
+BENCHMARK(sphereRegions)->ArgName("diameters")->Arg(3)->Arg(5)->Unit(benchmark::kMillisecond);
 
 void gatherRegions(benchmark::State& state)
 {
