@@ -25,7 +25,7 @@ double shareInside(const Vec3& start, const Vec3& branch, double radius)
 	return std::max(0., std::min(1., (root - b) / a) - std::max(0., (-root - b) / a));
 }
 
-/// A grid of about one point a cell, which is sorted by it: the grid's indices are those of the new order, `order` tells which were which.
+/// A grid of about four points a cell, the quickest for regions of few and of hundreds of grains, which is sorted by it: the grid's indices are those of the new order, `order` tells which were which.
 std::unique_ptr<CellGrid> sortedGrid(std::vector<Vec3> points, std::vector<int>& order)
 {
 	if (points.empty()) return nullptr;
@@ -36,7 +36,7 @@ std::unique_ptr<CellGrid> sortedGrid(std::vector<Vec3> points, std::vector<int>&
 	}
 	const double longest = (high - low).maxCoeff(), widest = longest > 0 ? longest : 1;
 	// a flat or slender assembly gets no finer cells than its longest side wants
-	const double spacing = std::cbrt((high - low).cwiseMax(widest * 1e-3).prod() / double(points.size()));
+	const double spacing = std::cbrt((high - low).cwiseMax(widest * 1e-3).prod() / (0.25 * double(points.size())));
 	auto grid = std::make_unique<CellGrid>(low, high, std::max(spacing, widest * 1e-2));
 	grid->fill(points);
 	order = grid->order();
