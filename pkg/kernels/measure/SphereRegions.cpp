@@ -25,7 +25,8 @@ double shareInside(const Vec3& start, const Vec3& branch, double radius)
 	return std::max(0., std::min(1., (root - b) / a) - std::max(0., (-root - b) / a));
 }
 
-/// A grid of about four points a cell, the quickest for regions of few and of hundreds of grains, which is sorted by it: the grid's indices are those of the new order, `order` tells which were which.
+/// A grid of about four points a cell, the quickest for regions of few and of hundreds of grains. Its indices are those of the points in the order of its
+/// cells; `order` tells which were which.
 std::unique_ptr<CellGrid> sortedGrid(std::vector<Vec3> points, std::vector<int>& order)
 {
 	if (points.empty()) return nullptr;
