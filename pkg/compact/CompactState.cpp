@@ -267,10 +267,11 @@ vector<Vector3r> CompactState::contactForces(const vector<hexmembrane::Place>& p
 void CompactState::visitContacts(const vector<hexmembrane::Place>& places, const vector<std::shared_ptr<const hexmembrane::BoundaryShape>>& shapes,
                                  const VisitContact& visit) const
 {
+	const Real inf = std::numeric_limits<Real>::infinity();
 	const auto put = [&](Body::id_t id1, Body::id_t id2, const Vector3r& centre1, const Vector3r& centre2, const hexmembrane::Contact& c,
 	                     const hexmembrane::BoundaryTouch& touch) {
 		const Real normal = c.law.kn * touch.overlap;
-		visit({id1, id2, centre1, centre2, touch.point, normal * touch.normal + c.memory.shear, normal});
+		visit({id1, id2, centre1, centre2, touch.point, normal * touch.normal + c.memory.shear, normal, c.bonded() ? inf : c.law.friction});
 	};
 	forEachSpherePair(places, [&](int i, int j, const hexmembrane::Contact& c) {
 		put(spheres.id[i], spheres.id[j], places[i].centre, places[j].centre, c, touchOf(places[i], places[j]));

@@ -48,6 +48,7 @@ struct TouchingContact {
 	Vector3r point;            //!< half way through the overlap (m)
 	Vector3r force;            //!< of the springs, on the second body (N)
 	Real normalForce;          //!< compression positive (N)
+	Real friction;             //!< coefficient (-); infinite: a bond holds it, NaN: the law does not tell
 };
 using VisitContact = std::function<void(const TouchingContact&)>;
 

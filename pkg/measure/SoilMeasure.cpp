@@ -29,19 +29,7 @@ const Body& bodyOf(const Scene& scene, Body::id_t id, const string& what, const 
 
 Real halfOf(const Body& platen) { return 0.5 * static_cast<const Platen&>(*platen.shape).height; }
 
-// A tensor row by row, as numpy has it.
-void append(vector<Real>& rows, const Matrix3r& m)
-{
-	for (int i = 0; i < 3; ++i)
-		for (int j = 0; j < 3; ++j) rows.push_back(m(i, j));
-}
-
-boost::python::object tensor(const Matrix3r& m)
-{
-	vector<Real> rows;
-	append(rows, m);
-	return numpyArray(rows, "f8", 3);
-}
+boost::python::object tensor(const Matrix3r& m) { return numpyTensors({m})[0]; }
 
 // The branch joins the centres of grains; to what is no grain it ends at the contact.
 void addBranch(hexmembrane::SlabStress& slabs, const TouchingContact& c, bool first, bool second)
@@ -162,9 +150,9 @@ boost::python::tuple SoilMeasure::profile(int count) const
 		addBranch(slabs, c, first, second);
 	});
 	const vector<Real> parts = volumes(scene, sheetNow(), edges);
-	vector<Real> stresses;
-	for (int s = 0; s < count; ++s) append(stresses, slabs.sums()[s] / parts[s]);
-	return boost::python::make_tuple(numpyArray(edges, "f8"), numpyArray(parts, "f8"), numpyArray(stresses, "f8", 9).attr("reshape")(-1, 3, 3));
+	vector<Matrix3r> stresses;
+	for (int s = 0; s < count; ++s) stresses.push_back(slabs.sums()[s] / parts[s]);
+	return boost::python::make_tuple(numpyArray(edges, "f8"), numpyArray(parts, "f8"), numpyTensors(stresses));
 }
 
 boost::python::object SoilMeasure::coordinationNumbers(const vector<Body::id_t>& ids) const

@@ -4,10 +4,12 @@
 #include "HexMembrane.hpp"
 
 #include "base/GatherBodies.hpp"
+#include "contact/LinearContact.hpp"
 
 #include <core/Interaction.hpp>
 #include <pkg/common/NormShearPhys.hpp>
 #include <pkg/common/Sphere.hpp>
+#include <pkg/dem/CohesiveFrictionalContactLaw.hpp>
 #include <pkg/dem/ScGeom.hpp>
 #include <pkg/dem/NewtonIntegrator.hpp>
 
@@ -220,6 +222,16 @@ Real BodyView::stiffness(Body::id_t boundary, const Vector3r& along)
 
 namespace {
 
+//! As TouchingContact::friction.
+Real frictionOf(const NormShearPhys& phys)
+{
+	const auto* linear = dynamic_cast<const LinearPhys*>(&phys);
+	const auto* cohesive = dynamic_cast<const CohFrictPhys*>(&phys);
+	if ((linear && linear->bonded) || (cohesive && !cohesive->cohesionBroken)) return std::numeric_limits<Real>::infinity();
+	const auto* frictional = dynamic_cast<const FrictPhys*>(&phys);
+	return frictional ? frictional->tangensOfFrictionAngle : NaN;
+}
+
 void forEachInteraction(const Scene& scene, const string& who, const VisitContact& visit)
 {
 	for (const auto& interaction : *scene.interactions) {
@@ -240,7 +252,7 @@ void forEachInteraction(const Scene& scene, const string& who, const VisitContac
 			                   : body.state->pos;
 		};
 		visit({a->getId(), b->getId(), centre(*a, -1), centre(*b, 1), geom->contactPoint, phys->normalForce + phys->shearForce,
-		       phys->normalForce.dot(geom->normal)});
+		       phys->normalForce.dot(geom->normal), frictionOf(*phys)});
 	}
 	Stepped::forEachIn(scene, [&](const Stepped& engine) { engine.forEachContact(visit); });
 }

@@ -52,6 +52,32 @@ TEST(CellGrid, meetsEveryNearPairOnce)
 	}
 }
 
+TEST(CellGrid, meetsEveryPointWithinAReachOnce)
+{
+	const auto points = scatter(500, 5);
+	Random random(2);
+	for (const double size : {0.11, 0.3, 5.0}) {
+		CellGrid grid(low, high, size);
+		grid.fill(points);
+		long visits = 0;
+		for (int k = 0; k < 200; ++k) {
+			// on borders of cells too, where a distance to a cell is a rounding
+			const Vec3 place = k % 4 ? Vec3(random.uniform(-1.5, 1.5), random.uniform(-3, 3), random.uniform(-1, 4)) : points[k];
+			const double reach = k % 3 ? random.uniform(0, 0.8) : (points[k + 1] - place).norm();
+			std::multiset<int> met;
+			grid.forEachWithin(place, reach, [&](int i) { met.insert(i); });
+			visits += long(met.size());
+			for (int i = 0; i < 500; ++i) EXPECT_LE(std::size_t((points[i] - place).norm() <= reach), met.count(i));
+			for (const int i : met) EXPECT_EQ(met.count(i), 1u);
+		}
+		if (size < 0.2) {
+			EXPECT_LT(visits, 200 * 500 / 4);
+		}
+		grid.forEachWithin(Vec3(NAN, 0, 0), 1, [](int) { ADD_FAILURE(); });
+		grid.forEachWithin(Vec3(0, 0, 0), NAN, [](int) { ADD_FAILURE(); });
+	}
+}
+
 TEST(CellGrid, skipsWhatIsFarAway)
 {
 	CellGrid grid(low, high, 0.3);

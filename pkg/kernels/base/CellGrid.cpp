@@ -35,6 +35,15 @@ int CellGrid::cellOf(double coordinate, int axis) const
 	return int(std::clamp(cell, 0.0, double(count[axis] - 1)));
 }
 
+// Along one axis, never too large: cells at the border reach to infinity, and a point beside a border between cells may have been rounded across it.
+double CellGrid::distanceToCells(double coordinate, int cell, int axis) const
+{
+	const double place = (coordinate - origin[axis]) * perLength[axis], below = cell > 0 ? cell - place : 0,
+	             above = cell + 1 < count[axis] ? place - cell - 1 : 0;
+	const double cells = std::max(below, above) - 1e-6;
+	return cells > 0 ? cells / perLength[axis] : 0;
+}
+
 void CellGrid::fill(const std::vector<Vec3>& points)
 {
 	if (points.size() > std::size_t(std::numeric_limits<int>::max())) reject("points", double(points.size()), "too many", "fewer than 2^31 points");

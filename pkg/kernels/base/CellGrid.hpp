@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace hexmembrane {
@@ -33,6 +35,11 @@ public:
 	template <class Visit>
 	void forEachNear(const Vec3& place, Visit&& visit) const;
 
+	/// Calls visit(i) for every point in the cells that the ball round `place` meets: all points within `reach` (m) and some beyond. Cells of a row come one
+	/// after the other, so that points that were sorted by order() are read as they lie. Nothing is near a place or a reach that is not finite.
+	template <class Visit>
+	void forEachWithin(const Vec3& place, double reach, Visit&& visit) const;
+
 	/// Number of cells along x, y and z.
 	const std::array<int, 3>& cells() const { return count; }
 	/// Indices of the points sorted by cell: neighbours in this order are neighbours in space.
@@ -43,6 +50,7 @@ public:
 
 private:
 	int cellOf(double coordinate, int axis) const;
+	double distanceToCells(double coordinate, int cell, int axis) const;
 	std::size_t indexOf(int ix, int iy, int iz) const { return (std::size_t(iz) * count[1] + iy) * count[0] + ix; }
 
 	Vec3 origin;
@@ -89,6 +97,23 @@ void CellGrid::forEachNear(const Vec3& place, Visit&& visit) const
 				const std::size_t n = indexOf(ix, iy, iz);
 				for (int a = first[n]; a < first[n + 1]; ++a) visit(sorted[a]);
 			}
+}
+
+template <class Visit>
+void CellGrid::forEachWithin(const Vec3& place, double reach, Visit&& visit) const
+{
+	if (first.empty() || !place.allFinite() || !(reach >= 0) || !(reach < std::numeric_limits<double>::infinity())) return;
+	const int lastZ = cellOf(place[2] + reach, 2), lastY = cellOf(place[1] + reach, 1), firstY = cellOf(place[1] - reach, 1);
+	for (int iz = cellOf(place[2] - reach, 2); iz <= lastZ; ++iz) {
+		const double dz = distanceToCells(place[2], iz, 2), left = reach * reach - dz * dz;
+		for (int iy = firstY; iy <= lastY; ++iy) {
+			const double dy = distanceToCells(place[1], iy, 1), square = left - dy * dy;
+			if (square < 0) continue;
+			const double half = std::sqrt(square);
+			const int end = first[indexOf(cellOf(place[0] + half, 0), iy, iz) + 1];
+			for (int a = first[indexOf(cellOf(place[0] - half, 0), iy, iz)]; a < end; ++a) visit(sorted[a]);
+		}
+	}
 }
 
 /// Neighbour list of spheres: the partners of sphere i are other[start[i]] .. other[start[i + 1] - 1], all > i, ascending. Every pair stands once.
