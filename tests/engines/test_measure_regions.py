@@ -159,13 +159,13 @@ def test_aBondedContactDoesNotSlide(O, tier):
 
 @pytest.mark.parametrize("hertz", (False, True))
 def test_stockLawsOfSpheres(O, hertz):
-	"""A row of spheres under YADE's own laws, a wall that is no sphere, and one of another mask. Reference tier: no other knows these laws."""
+	"""A row of spheres under YADE's own laws, a box that is no sphere, and one of another mask. Reference tier: no other knows these laws."""
 	O.materials.append(yade.FrictMat(young=1e8, poisson=0.3, frictionAngle=0.4))
 	for z in (1e-3, 2.95e-3, 4.9e-3):
 		sphere((0, 0, z), 1e-3, fixed=True)
 	apart = sphere((0, 0, 6.85e-3), 1e-3, fixed=True)
 	O.bodies[apart].groupMask = 1 + 4
-	O.bodies.append(utils.wall(5e-5, axis=2))
+	O.bodies.append(utils.box((0, 0, -9.5e-4), (0.01, 0.01, 1e-3), fixed=True))
 	physics, law = (
 		(yade.Ip2_FrictMat_FrictMat_MindlinPhys(), yade.Law2_ScGeom_MindlinPhys_Mindlin())
 		if hertz
@@ -173,8 +173,8 @@ def test_stockLawsOfSpheres(O, hertz):
 	)
 	O.engines = [
 		yade.ForceResetter(),
-		yade.InsertionSortCollider([yade.Bo1_Sphere_Aabb(), yade.Bo1_Wall_Aabb()]),
-		yade.InteractionLoop([yade.Ig2_Sphere_Sphere_ScGeom(), yade.Ig2_Wall_Sphere_ScGeom()], [physics], [law]),
+		yade.InsertionSortCollider([yade.Bo1_Sphere_Aabb(), yade.Bo1_Box_Aabb()]),
+		yade.InteractionLoop([yade.Ig2_Sphere_Sphere_ScGeom(), yade.Ig2_Box_Sphere_ScGeom()], [physics], [law]),
 		yade.NewtonIntegrator(),
 	]
 	O.dt = 1e-9
