@@ -132,13 +132,25 @@ vector<Vector3r> CompactLoop::contactForces(const HexMembrane& membrane) const
 	if (state->sheet.membrane != &membrane)
 		throw std::runtime_error("CompactLoop: this membrane is not one that it steps; fix: MembraneBonds of this membrane in CompactLoop.engines");
 	const Instant then = lastInstant();
-	return state->contactForces(then.places, then.shapes);
+	return withEngines(state->contactForces(then.places, then.shapes));
+}
+
+vector<Vector3r> CompactLoop::withEngines(vector<Vector3r> forces) const
+{
+	Stepped::forEachOf(engines, [&](const Stepped& one) { one.addContactForces(*state->sheet.ids, forces); });
+	return forces;
 }
 
 void CompactLoop::forEachContact(const VisitContact& visit) const
 {
 	const Instant then = lastInstant();
 	state->visitContacts(then.places, then.shapes, visit);
+	visitEngines(visit);
+}
+
+void CompactLoop::visitEngines(const VisitContact& visit) const
+{
+	Stepped::forEachOf(engines, [&](const Stepped& one) { one.forEachContact(visit); });
 }
 
 void CompactLoop::exportContacts()
@@ -182,6 +194,7 @@ int CompactLoop::contactCount() const
 	requireRun("contactCount");
 	int count = static_cast<int>(contactsSoFar().size());
 	state->spheres.smooth.forEachTouching(lastInstant().places, [&](int, int, Real, Real, const Vector3r&) { ++count; });
+	visitEngines([&](const TouchingContact&) { ++count; });
 	return count;
 }
 
@@ -189,8 +202,13 @@ Real CompactLoop::criticalTimeStep()
 {
 	requireRun("criticalTimeStep");
 	hexmembrane::CriticalStep step(state->spheres);
-	for (Stepped* one : stepped)
+	const auto& ids = state->spheres.id;
+	for (Stepped* one : stepped) {
 		one->forEachBond([&](int first, int second, const Vector3r& branch, Real kn, Real ks) { step.addBond(first, second, branch, kn, ks); });
+		one->forEachSupport([&](int particle, Body::id_t grain, const Vector3r& normal, Real kn) {
+			step.addSupport(particle, static_cast<int>(std::find(ids.begin(), ids.end(), grain) - ids.begin()), normal, kn);
+		});
+	}
 	if (state->sheet.ids)
 		step.setSheet(state->sheet.stencil, [&](const hexmembrane::PaddedRings& displacement, hexmembrane::PaddedRings& sum) {
 			for (const Stepped* one : stepped) one->addAnswer(displacement, sum);

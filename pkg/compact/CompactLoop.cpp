@@ -58,7 +58,13 @@ public:
 			loop.gripMeters.push_back(&meter);
 		}
 	}
-	vector<Vector3r> contactForces(const HexMembrane&) override { return state.contactForces(state.spheres.places, state.spheres.shapes()); }
+	hexmembrane::SphereRows grains(const HexMembrane&) override { return {state.spheres.places.data(), state.spheres.id.data(), state.spheres.grains()}; }
+	hexmembrane::Travel travel() const override { return state.spheres.travel(); }
+	void addForce(int grain, const Vector3r& force) override { state.spheres.loads[grain].force += force; }
+	vector<Vector3r> contactForces(const HexMembrane&) override
+	{
+		return loop.withEngines(state.contactForces(state.spheres.places, state.spheres.shapes()));
+	}
 	ContactSums contacts(Body::id_t boundary) override
 	{
 		const int b = require(boundary);
@@ -66,7 +72,11 @@ public:
 		return {load.load.force + loop.outsideOn[b], load.normalForce, load.normalStiffness, load.count, ""};
 	}
 	Real stiffness(Body::id_t boundary, const Vector3r& along) override { return state.spheres.boundaryContacts[require(boundary)].stiffness(along); }
-	void forEachContact(const VisitContact& visit) override { state.visitContacts(state.spheres.places, state.spheres.shapes(), visit); }
+	void forEachContact(const VisitContact& visit) override
+	{
+		state.visitContacts(state.spheres.places, state.spheres.shapes(), visit);
+		loop.visitEngines(visit);
+	}
 
 private:
 	void takeOver(WorkMeter& meter, const vector<RingRange>& rings) const

@@ -26,6 +26,7 @@ public:
 	bool keepsContacts() const override { return state && !exported; }
 	vector<Vector3r> contactForces(const HexMembrane& membrane) const override;
 	void forEachContact(const VisitContact& visit) const override;
+	const vector<shared_ptr<Engine>>& innerEngines() const override { return engines; }
 
 private:
 	// CompactLoop.cpp: the run of a step
@@ -61,6 +62,9 @@ private:
 		vector<std::shared_ptr<const hexmembrane::BoundaryShape>> shapes;
 	};
 	Instant lastInstant() const;
+	//! Forces of contacts on the sheet's particles, with those of the contacts that engines have made.
+	vector<Vector3r> withEngines(vector<Vector3r> forces) const;
+	void visitEngines(const VisitContact& visit) const;
 	void requireRun(const char* what) const;
 
 	//! The instant of a step as the engines see it.
@@ -117,7 +121,7 @@ private:
 		.def("contactCount",&CompactLoop::contactCount,"Number of touching contacts, boundaries and membrane included.")
 		.def("contract",&CompactLoop::contract,"What is done with each attribute that a script may change between iterations: a list of (of, attribute, 'read' | 'watched' | 'refused', what). Read: acts from the next iteration on. Watched: a change makes the tier collect the scene anew. Refused: an error with body id and fix, before anything is changed.").staticmethod("contract")
 		.def("canStep",&CompactLoop::canStep,(boost::python::arg("engine")),"Whether an engine can be stepped inside, by its class.").staticmethod("canStep")
-		.def("criticalTimeStep",&CompactLoop::criticalTimeStep,"Critical time step [s] of central differences, $2/\\omega$, with the highest frequency $\\omega$ of the contacts and the sheet (bonds, bending, self-contact) as they are now (all sticking), by power iteration to about 1 %.")
+		.def("criticalTimeStep",&CompactLoop::criticalTimeStep,"Critical time step [s] of central differences, $2/\\omega$, with the highest frequency $\\omega$ of the contacts and the sheet (bonds, bending, contacts that its engines make) as they are now (all sticking), by power iteration to about 1 %.")
 	);
 	// clang-format on
 	DECLARE_LOGGER;

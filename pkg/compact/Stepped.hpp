@@ -3,6 +3,7 @@
 
 #include "WorkMeter.hpp"
 
+#include "kernels/base/Place.hpp"
 #include "kernels/membrane/PaddedRings.hpp"
 
 #include <core/Body.hpp>
@@ -66,13 +67,19 @@ public:
 	                       const hexmembrane::PaddedRings* torque, WorkMeter* meter) = 0;
 	//! Gives rings a velocity, whatever acts on them, and books the work of what holds them. After all forces.
 	virtual void grip(const HexMembrane& membrane, const vector<std::pair<int, Vector3r>>& rings, WorkMeter& meter) = 0;
+	//! The spheres that are not of this membrane; they stay where they are until the step ends.
+	virtual hexmembrane::SphereRows grains(const HexMembrane& membrane) = 0;
+	//! How far those spheres and the particles have gone; not known: look.
+	virtual hexmembrane::Travel travel() const { return {}; }
+	//! Adds a force to one of those rows.
+	virtual void addForce(int grain, const Vector3r& force) = 0;
 	//! Normal forces of the contacts of each particle with all that is not membrane (N), on the particle.
 	virtual vector<Vector3r> contactForces(const HexMembrane& membrane) = 0;
 	//! Sums over the contacts of a boundary.
 	virtual ContactSums contacts(Body::id_t boundary) = 0;
 	//! Stiffness of a boundary's contacts along a unit vector: sum of kn c^2 + ks (1 - c^2), c the cosine between normal and vector (N/m).
 	virtual Real stiffness(Body::id_t boundary, const Vector3r& along) = 0;
-	//! Calls visit for every touching contact.
+	//! Calls visit for every touching contact, those that engines make included: of this step when they stand before the one that asks.
 	virtual void forEachContact(const VisitContact& visit) = 0;
 };
 
@@ -94,6 +101,18 @@ public:
 	virtual void forEachBond(const VisitBond&) const {}
 	//! Adds the forces that small displacements of its membrane's particles (wrapped rows) call up beyond those springs, linear in them: likewise.
 	virtual void addAnswer(const hexmembrane::PaddedRings& displacement, hexmembrane::PaddedRings& sum) const { (void)displacement, (void)sum; }
+	//! Calls visit for every touching contact that this engine made in its last step, a particle of its membrane first. They have no friction.
+	virtual void forEachContact(const VisitContact&) const {}
+	//! Adds their forces to those of `onParticles`, which belong to these bodies (N).
+	void addContactForces(const vector<Body::id_t>& ids, vector<Vector3r>& onParticles) const;
+	//! Calls visit(particle, id of a grain, unit vector from one to the other, kn) for each spring between them: as forEachBond().
+	using VisitSupport = std::function<void(int, Body::id_t, const Vector3r&, Real)>;
+	virtual void forEachSupport(const VisitSupport&) const {}
+	//! Calls visit for each of these engines that is stepped and not dead.
+	using Visit = std::function<void(const Stepped&)>;
+	static void forEachOf(const vector<shared_ptr<Engine>>& engines, const Visit& visit);
+	//! Calls visit for each such engine of a scene, in either tier.
+	static void forEachIn(const Scene& scene, const Visit& visit);
 	//! The membrane that it acts on, none: no membrane.
 	virtual const HexMembrane* actsOn() const { return nullptr; }
 	//! Whether there may be several engines of this class in a list.
@@ -121,6 +140,8 @@ public:
 	virtual vector<Vector3r> contactForces(const HexMembrane& membrane) const = 0;
 	//! As StepView::forEachContact(), of the last step.
 	virtual void forEachContact(const VisitContact& visit) const = 0;
+	//! The engines that it steps.
+	virtual const vector<shared_ptr<Engine>>& innerEngines() const = 0;
 };
 
 } // namespace yade

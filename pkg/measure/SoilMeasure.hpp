@@ -25,6 +25,10 @@ public:
 	Stress measure(const Scene& scene, StepView& view) const;
 	//! Throws when something is not set or does not exist; `who` asks.
 	void require(const Scene& scene, const string& who) const;
+	//! Heights of the platens' faces (m).
+	std::array<Real, 2> faces(const Scene& scene) const;
+	//! By body id: whether it is a grain, a sphere that is not of the membrane.
+	vector<char> grainsOf(const Scene& scene) const;
 
 	// Python-facing, of the last step
 	boost::python::dict stress() const;
@@ -33,13 +37,9 @@ public:
 	boost::python::object coordinationNumbers(const vector<Body::id_t>& ids) const;
 
 private:
-	//! Heights of the platens' faces (m).
-	std::array<Real, 2> faces(const Scene& scene) const;
 	//! Between rising heights, one less than heights (m3).
 	vector<Real> volumes(const Scene& scene, const vector<Vector3r>& sheet, const vector<Real>& heights) const;
 	vector<Vector3r> sheetNow() const;
-	//! By body id: whether it is a grain, a sphere that is not of the membrane.
-	vector<char> grainsOf(const Scene& scene) const;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(SoilMeasure,Serializable,

@@ -13,6 +13,8 @@
 #include <pkg/dem/ScGeom.hpp>
 #include <pkg/dem/NewtonIntegrator.hpp>
 
+#include <unordered_map>
+
 namespace yade {
 
 namespace {
@@ -64,6 +66,31 @@ const Engine* ContactKeeper::of(const Scene& scene)
 	for (const auto& engine : scene.engines)
 		if (!engine->dead && dynamic_cast<const ContactKeeper*>(engine.get())) return engine.get();
 	return nullptr;
+}
+
+void Stepped::forEachOf(const vector<shared_ptr<Engine>>& engines, const Visit& visit)
+{
+	for (const auto& engine : engines) {
+		const auto* one = dynamic_cast<const Stepped*>(engine.get());
+		if (one && !engine->dead) visit(*one);
+	}
+}
+
+void Stepped::forEachIn(const Scene& scene, const Visit& visit)
+{
+	const auto* keeper = dynamic_cast<const ContactKeeper*>(ContactKeeper::of(scene));
+	forEachOf(keeper ? keeper->innerEngines() : scene.engines, visit);
+}
+
+void Stepped::addContactForces(const vector<Body::id_t>& ids, vector<Vector3r>& onParticles) const
+{
+	std::unordered_map<Body::id_t, size_t> index; // made when there is a contact
+	forEachContact([&](const TouchingContact& contact) {
+		if (index.empty())
+			for (size_t i = 0; i < ids.size(); ++i) index[ids[i]] = i;
+		const auto at = index.find(contact.id1);
+		if (at != index.end()) onParticles[at->second] -= contact.force;
+	});
 }
 
 const ContactKeeper* ContactKeeper::in(const Scene& scene)
@@ -141,6 +168,29 @@ void BodyView::grip(const HexMembrane& membrane, const vector<std::pair<int, Vec
 	meter.add(scene.iter, held, at, speeding);
 }
 
+hexmembrane::SphereRows BodyView::grains(const HexMembrane& membrane)
+{
+	if (grainsBeside == &membrane) return {grainPlaces.data(), grainIds.data(), static_cast<int>(grainIds.size())};
+	grainsBeside = &membrane;
+	vector<char> own(scene.bodies->size(), 0);
+	for (Body::id_t id : membrane.ids) own.at(id) = 1;
+	grainPlaces.clear();
+	grainIds.clear();
+	for (const auto& body : *scene.bodies) {
+		const auto* sphere = body && !own[body->getId()] ? dynamic_cast<const Sphere*>(body->shape.get()) : nullptr;
+		if (!sphere) continue;
+		grainPlaces.push_back({body->state->pos, sphere->radius});
+		grainIds.push_back(body->getId());
+	}
+	return grains(membrane);
+}
+
+void BodyView::addForce(int grain, const Vector3r& force)
+{
+	if (!isFinite(force)) throwNotFinite(who + ": force", grainIds[grain], scene);
+	scene.forces.addForce(grainIds[grain], force);
+}
+
 vector<Vector3r> BodyView::contactForces(const HexMembrane& membrane) { return membrane.contactForces(scene, who); }
 
 ContactSums BodyView::contacts(Body::id_t boundary)
@@ -204,6 +254,7 @@ void forEachInteraction(const Scene& scene, const string& who, const VisitContac
 		visit({a->getId(), b->getId(), centre(*a, -1), centre(*b, 1), geom->contactPoint, phys->normalForce + phys->shearForce,
 		       phys->normalForce.dot(geom->normal), frictionOf(*phys)});
 	}
+	Stepped::forEachIn(scene, [&](const Stepped& engine) { engine.forEachContact(visit); });
 }
 
 } // namespace

@@ -18,6 +18,8 @@ public:
 	void addForces(const HexMembrane& membrane, const vector<RingRange>& rings, const hexmembrane::PaddedRings& force,
 	               const hexmembrane::PaddedRings* torque, WorkMeter* meter) override;
 	void grip(const HexMembrane& membrane, const vector<std::pair<int, Vector3r>>& rings, WorkMeter& meter) override;
+	hexmembrane::SphereRows grains(const HexMembrane& membrane) override;
+	void addForce(int grain, const Vector3r& force) override;
 	vector<Vector3r> contactForces(const HexMembrane& membrane) override;
 	ContactSums contacts(Body::id_t boundary) override;
 	Real stiffness(Body::id_t boundary, const Vector3r& along) override;
@@ -28,6 +30,9 @@ private:
 	const string who;
 	hexmembrane::PaddedRings rows;
 	const HexMembrane* rowsOf = nullptr;
+	vector<hexmembrane::Place> grainPlaces;
+	vector<Body::id_t> grainIds;
+	const HexMembrane* grainsBeside = nullptr; //!< membrane that they are not of
 };
 
 } // namespace yade

@@ -246,6 +246,7 @@ vector<Vector3r> HexMembrane::contactForces(const Scene& scene, const string& wh
 			// YADE's laws apply +normalForce to the second body
 			forces[i] += contact.getId1() == ids[i] ? Vector3r(-phys->normalForce) : phys->normalForce;
 		}
+	Stepped::forEachIn(scene, [&](const Stepped& engine) { engine.addContactForces(ids, forces); });
 	return forces;
 }
 

@@ -40,12 +40,14 @@ public:
 	Real transmittedPressure(int group) const;
 	//! The same ring by ring (Pa).
 	vector<Real> transmittedByRing() const;
-	//! Sum of the normal contact forces of all that is not membrane on each particle (N), from O.interactions.
+	//! Sum of the normal contact forces of all that is not membrane on each particle (N), from O.interactions and the engines.
 	vector<Vector3r> contactForces(const Scene& scene, const string& who) const;
 	//! The pressure that a group transmits in this instant (Pa).
 	Real transmitted(StepView& view, int group, const string& who) const;
 	//! Volumes (m3) inside the inner surface between rising heights, one less than heights, with the particles at x.
 	vector<Real> volumesBetween(const vector<Vector3r>& x, const vector<Real>& heights) const;
+	//! Points of the inner surface (m), one a particle, with the particles at x.
+	vector<Vector3r> innerPoints(const vector<Vector3r>& x) const { return surfacePoints("inner", x); }
 	//! The particles' places in this instant.
 	vector<Vector3r> positionsIn(StepView& view) const;
 	//! Mean pressure (Pa) that forces on the particles (N, positive inwards) are over the inner area of a group (0: all of groups 2 and 3).

@@ -1,8 +1,9 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneSelfContact.hpp"
 
+#include "ContactStiffness.hpp"
+
 #include "base/NamedFields.hpp"
-#include "contact/LinearContact.hpp"
 #include "kernels/membrane/MembraneTension.hpp"
 
 namespace yade {
@@ -18,20 +19,8 @@ void MembraneSelfContact::requireMembrane(const string& who) const
 
 Real MembraneSelfContact::normalStiffness() const
 {
-	if (!math::isnan(kn)) {
-		hexmembrane::requirePositive("MembraneSelfContact.kn", kn, "N/m");
-		return kn;
-	}
-	const string who = "MembraneSelfContact.normalStiffness";
-	requireMembrane(who);
-	const auto& material = membrane->body(*Omega::instance().getScene(), 0, who)->material;
-	const auto* linear = dynamic_cast<const LinearMat*>(material.get());
-	if (!linear)
-		hexmembrane::reject("MembraneSelfContact.kn", kn,
-		                    "not given, and the membrane's material (" + material->getClassName() + ") tells no stiffness", "kn in N/m, or LinearMat");
-	linear->requireComplete();
-	const auto m = linear->contactMaterial();
-	return hexmembrane::sphereLaw(m, m, membrane->sphereRadius, membrane->sphereRadius).kn;
+	if (math::isnan(kn)) requireMembrane("MembraneSelfContact.normalStiffness");
+	return contactStiffness(kn, membrane.get(), "MembraneSelfContact");
 }
 
 void MembraneSelfContact::prepare()

@@ -2,6 +2,7 @@
 // Cost of the membrane kernels, in ns a membrane particle and step (counter perParticle), fast against reference.
 #include "kernels/membrane/BendingForce.hpp"
 #include "kernels/membrane/BondForce.hpp"
+#include "kernels/membrane/FacetContact.hpp"
 #include "kernels/membrane/HexLattice.hpp"
 #include "kernels/membrane/PressureForce.hpp"
 #include "kernels/membrane/SelfContact.hpp"
@@ -126,6 +127,22 @@ void selfContact(benchmark::State& state)
 	perParticle(state, l.particles());
 }
 
+/// A sheet that is not stretched: no triangle acts.
+void facetContact(benchmark::State& state)
+{
+	const HexLattice l = membrane(state);
+	reference::Memory bonds;
+	const BondForce placed = loaded(l, law(0), bonds);
+	FacetContact kernel(l, l.sphereRadius, 0.25 * l.sphereRadius, 1e4);
+	const Place grain{Vec3::Zero(), l.sphereRadius};
+	const int id = 0;
+	for (auto _ : state) {
+		kernel.compute(placed.position, [&] { return SphereRows{&grain, &id, 1}; });
+		benchmark::DoNotOptimize(kernel.touching().size());
+	}
+	perParticle(state, l.particles());
+}
+
 void pressure(benchmark::State& state, bool inner)
 {
 	const HexLattice l = membrane(state);
@@ -153,6 +170,7 @@ BENCHMARK(bondsReference)->Arg(500);
 BENCHMARK(bending)->Arg(500)->Arg(250);
 BENCHMARK(bendingReference)->Arg(500);
 BENCHMARK(selfContact)->Arg(500)->Arg(250);
+BENCHMARK(facetContact)->Arg(500)->Arg(250);
 BENCHMARK_CAPTURE(pressure, inner, true)->Arg(500)->Arg(250);
 BENCHMARK_CAPTURE(pressure, centre, false)->Arg(500)->Arg(250);
 BENCHMARK(pressureReference)->Arg(500);

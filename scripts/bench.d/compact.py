@@ -6,7 +6,7 @@ of stiffness. What is compared is measured in one process, in turns where the sc
 Arguments: folder of the results, parts to run (default: all):
   membrane   flexible against stock, R = 0.5 and 0.25 mm, and against the rigid wall
   age        the flexible scene of R = 0.5 mm fresh, after 5,000 and after 50,000 steps
-  sheet      the flexible scene of R = 0.5 mm without and with bending stiffness and self-contact of its sheet
+  sheet      the flexible scene of R = 0.5 mm without and with bending stiffness, self-contact and facets of its sheet
   threads    the flexible and the rigid scene with one thread and with two (yade -j2)
   size       soil alone, 7,000 to 1,000,000 spheres; and the memory that the tier takes beside YADE's bodies
 """
@@ -76,9 +76,9 @@ def age(packed, rows):
 def sheet(packed, rows):
 	"""One scene whose engines take turns to be dead, so that the machine's mood and the contacts are the same for all."""
 	bending, contact = (lambda m: yade.MembraneBending(membrane=m, stiffness=5e-5)), (lambda m: yade.MembraneSelfContact(membrane=m))
-	flexible("compact", packed, 0.5e-3, (bending, contact))
-	_, *extra = O.engines[1].engines[:3]
-	scenes = {"bonds alone": (0, 0), "bending": (1, 0), "self-contact": (0, 1), "bending and self-contact": (1, 1)}
+	flexible("compact", packed, 0.5e-3, (bending, contact, lambda m: yade.MembraneFacetContact(membrane=m)))
+	_, *extra = O.engines[1].engines[:4]
+	scenes = {"bonds alone": (0, 0, 0), "bending": (1, 0, 0), "self-contact": (0, 1, 0), "facets": (0, 0, 1), "all": (1, 1, 1)}
 	times = {name: [] for name in scenes}
 	O.run(WARM, True)
 	for _ in range(15):

@@ -8,17 +8,12 @@ whose folder has a result is not run again, so an interrupted survey goes on. Ru
 """
 
 import argparse
-import concurrent.futures
-import os
 import pathlib
-import subprocess
 import sys
 
-import yaml
-
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 
+import survey  # noqa: E402
 from hexmembrane.configuration import merged  # noqa: E402
 from hexmembrane.output import records  # noqa: E402
 from table import write  # noqa: E402
@@ -27,7 +22,7 @@ SEEDS = range(7, 17)
 VELOCITIES, STRETCH = (0.015, 0.03, 0.12), (150, 300, 450, 2400)
 HEADER = (
 	"run", "outcome", "axial strain [%]", "start: axial [kPa]", "radial [kPa]", "middle axial [kPa]", "middle radial [kPa]", "largest q [kPa]",
-	"boundary against contacts [% of axial]", "lost bonds", "time [s]", "message",
+	"boundary and inertia against contacts [% of axial]", "inertia [% of axial]", "lost bonds", "time [s]", "message",
 )  # fmt: skip
 
 
@@ -55,63 +50,46 @@ def cases():
 
 
 def configuration(change):
-	base = yaml.safe_load((ROOT / "examples" / "quick.yaml").read_text())
-	base["specimen"]["gradation"] = str(ROOT / "examples" / "data" / "toyoura.csv")
 	common = {"shear": {"strain": 0.2}, "output": {"records": 40, "vtkEvery": 0, "checkpointEvery": 10, "energy": False}}
-	return merged(merged(base, common), change)
+	return survey.configuration(common, change)
 
 
 def run(name, change, folder):
 	"""One test in a process of its own; its row."""
-	out = folder / name.replace(", ", "_").replace(" ", "-").replace("/", "-per-")
-	log = folder / f"{out.name}.log"
-	if not log.is_file():
-		out.mkdir(exist_ok=True)
-		file = folder / f"{out.name}.yaml"
-		file.write_text(yaml.safe_dump(configuration(change)))
-		program = [sys.executable, str(ROOT / "scripts" / "setup.d" / "launch.py"), "1", str(ROOT / "py" / "hexmembrane" / "__main__.py")]
-		arguments = [str(file), "--out", str(out), *(["--resume"] if (out / "checkpoint.json").is_file() else [])]
-		ended = subprocess.run([*program, *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
-		errors = [line for line in ended.stderr.splitlines() if line.startswith("error: ")]
-		log.write_text(f"{ended.returncode} {errors[-1] if errors else ''}\n")
-	code, _, message = log.read_text().strip().partition(" ")
-	return row(name, int(code), message, out)
+	return row(name, *survey.run(name, configuration(change), folder))
 
 
 def row(name, code, message, out):
-	outcome = {0: "done", 2: "refused"}.get(code, "stopped")
+	outcome = survey.outcome(code)
 	if not (out / "records.csv").is_file():
-		return name, outcome, *[""] * 9, message
+		return name, outcome, *[""] * 10, message
 	table = records.read(out / "records.csv")
 	shear = [i for i, stage in enumerate(table["stage"]) if stage == "shear"]
 	if not shear:
-		return name, outcome, *[""] * 9, message
+		return name, outcome, *[""] * 10, message
 	first = shear[0]
 	start = [f"{1e-3 * table[key][first]:.2f}" for key in ("soil_axial", "soil_radial", "soil_axial_middle", "soil_radial_middle")]
-	apart = max(abs(table[f"boundary_{a}"][i] - table[f"soil_{a}"][i]) / table["soil_axial"][i] for a in ("axial", "radial") for i in shear)
+	apart, inertia = (
+		max(abs(sum(sign * table[f"{name}_{a}"][i] for name, sign in parts)) / table["soil_axial"][i] for a in ("axial", "radial") for i in shear)
+		for parts in ((("boundary", 1), ("inertia", 1), ("soil", -1)), (("inertia", 1),))
+	)
 	most = max(table["q"][i] for i in shear)
 	return (
-		name, outcome, f"{100 * table['axial_strain'][-1]:.2f}", *start, f"{1e-3 * most:.1f}", f"{100 * apart:.2f}",
+		name, outcome, f"{100 * table['axial_strain'][-1]:.2f}", *start, f"{1e-3 * most:.1f}", f"{100 * apart:.4f}", f"{100 * inertia:.2f}",
 		int(table["bonds_broken"][-1]), f"{table['elapsed'][-1]:.0f}", message,
 	)  # fmt: skip
 
 
 def main(argv):
 	parser = argparse.ArgumentParser(prog="robustness.py", description="What becomes of 200 tests.")
-	parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path)
+	survey.addOptions(parser)
 	parser.add_argument("--runs", type=int, default=200, help="how many, from the first on")
-	parser.add_argument("--processes", type=int, default=len(os.sched_getaffinity(0)))
-	parser.add_argument("--only", default="", help="runs whose name has this in it")
 	arguments = parser.parse_args(argv)
-	arguments.folder.mkdir(parents=True, exist_ok=True)
-	wanted = [case for case in list(cases())[: arguments.runs] if arguments.only in case[0]]
-	rows = {}
-	with concurrent.futures.ThreadPoolExecutor(arguments.processes) as pool:
-		tasks = {pool.submit(run, name, change, arguments.folder): name for name, change in wanted}
-		for done in concurrent.futures.as_completed(tasks):
-			rows[tasks[done]] = done.result()
-			print(*done.result(), sep=" | ", flush=True)
-			write(str(arguments.folder / "robustness.csv"), HEADER, [rows[name] for name, _ in wanted if name in rows])
+	changed = {name: change for name, change in list(cases())[: arguments.runs] if arguments.only in name}
+	csv = str(arguments.folder / "robustness.csv")
+	rows = survey.runAll(
+		list(changed), lambda name: run(name, changed[name], arguments.folder), arguments.folder, arguments.processes, lambda rows: write(csv, HEADER, rows)
+	)
 	outcomes = [found[1] for found in rows.values()]
 	print(", ".join(f"{outcomes.count(kind)} {kind}" for kind in sorted(set(outcomes))))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How a benchmark writes its figures: a CSV whose first line names date and machine."""
+"""How a benchmark writes and reads its figures: a CSV whose first line names date and machine."""
 
 import csv
 import os
@@ -27,3 +27,10 @@ def write(path, header, rows):
 		writer.writerows(rows)
 	os.replace(path + ".part", path)
 	print("machine: %s\nwritten: %s" % (machine, path))
+
+
+def read(path):
+	"""Rows of a table as dicts of text."""
+	with open(path, newline="") as file:
+		file.readline()
+		return list(csv.DictReader(file))

@@ -32,12 +32,14 @@ def build(
 	porosity=0.45,
 	springs=False,
 	pressureTime=math.inf,
+	facets=None,
 ):
 	"""Fill YADE's empty scene; returns a dict of the inner engines by name.
 
 	:param tier: 'reference' or 'compact'. :param lateral: 'membrane' or 'wall'. :param swell: growth of the touching packing's grains, for overlaps.
 	:param spin: random velocities and spins of this size, for motion in every direction.
 	:param servoTime: time constant of the servo beside the platens [s]. :param pressureTime: of the pressure on the main body [s].
+	:param facets: attributes of a MembraneFacetContact, None: there is none.
 	:param springs: stiffness of the grains' material as kn and ks, else as emod and kratio.
 	"""
 
@@ -64,6 +66,8 @@ def build(
 		)
 		m.generate()
 		made["bonds"] = yade.MembraneBonds(membrane=m, young=2e6, thickness=5e-4, poisson=poisson)
+		if facets is not None:
+			made["facets"] = yade.MembraneFacetContact(membrane=m, bonds=made["bonds"], **facets)
 		made["pressure"] = yade.MembranePressure(membrane=m, pressure=pressure, timeConstant=pressureTime)
 		made["servo"] = yade.MembraneRadialServo(membrane=m, pressure=pressure, timeConstant=servoTime)
 	else:

@@ -160,6 +160,25 @@ TEST(SphereAssembly, listsMissNothingAndMemoriesMoveOver)
 	EXPECT_GT(remembered, 50);
 }
 
+TEST(SphereAssembly, travelBoundsEveryWayUntilTheOrderChanges)
+{
+	SphereAssembly flat = randomScene(200, 300);
+	flat.setSkin(1e-3);
+	flat.makeLists();
+	const Travel start = flat.travel();
+	const std::vector<Place> then = flat.places;
+	for (int s = 0; s < 20; ++s) step(flat, 1);
+	ASSERT_EQ(flat.listsMade(), 1);
+	EXPECT_EQ(flat.travel().order, start.order);
+	double furthest = 0;
+	for (int i = 0; i < flat.spheres(); ++i) furthest = std::max(furthest, (flat.places[i].centre - then[i].centre).norm());
+	EXPECT_GT(furthest, 0);
+	EXPECT_LE(furthest, (flat.travel().way - start.way) * (1 + 1e-12));
+	flat.makeLists();
+	EXPECT_NE(flat.travel().order, start.order);
+	EXPECT_NE(randomScene(200, 300).travel().order, flat.travel().order);
+}
+
 TEST(SphereAssembly, threadsAgreeAndRepeat)
 {
 	SphereAssembly one = randomScene(300, 300), three = one, again = one;
@@ -239,6 +258,23 @@ TEST(CriticalStep, ofAChain)
 		const double omega = 2 * std::sqrt(kn / mass) * std::sin(M_PI * (count - 1) / (2. * count));
 		EXPECT_NEAR(CriticalStep(flat).compute() / (2 / omega), 1, 1e-3);
 	}
+}
+
+TEST(CriticalStep, ofAGrainOnAParticle)
+{
+	// two masses on a spring: omega^2 = k (1/m + 1/M)
+	const double mass = 1e-5, other = 3e-5, kn = 1e4;
+	SphereAssembly flat;
+	const auto sphere = [](int id, double z, double m) {
+		return SphereAssembly::Sphere{id, {Vec3(0, 0, z), 1e-3}, {Vec3::Zero(), Vec3::Zero()}, m, 1, 0, false};
+	};
+	flat.setSpheres({sphere(0, 0, mass), sphere(1, 1, other)}, 1);
+	flat.setSkin(1e-5);
+	flat.setMaterials({smoothMaterial()});
+	flat.makeLists();
+	CriticalStep step(flat);
+	step.addSupport(0, 0, Vec3::UnitX(), kn);
+	EXPECT_NEAR(step.compute() / (2 / std::sqrt(kn * (1 / mass + 1 / other))), 1, 1e-3);
 }
 
 TEST(CriticalStep, ofASphereThatRollsOnAPlaten)

@@ -34,8 +34,9 @@ def built(O, packing, tmp_path):
 
 
 def test_offMakesNothing(built, tier):
-	scene, engines, _ = built(tier, bendingStiffness=0.0)
-	assert "MembraneBonds" in engines and not {"MembraneBending", "MembraneSelfContact"} & set(engines)
+	scene, engines, _ = built(tier, bendingStiffness=0.0, facets=False)
+	assert "MembraneBonds" in engines and not {"MembraneBending", "MembraneSelfContact", "MembraneFacetContact"} & set(engines)
+	assert scene.lateralBoundary.facets is None
 	assert scene.lateralBoundary.sheet == [engines["MembraneBonds"]]
 	assert engines["MembraneBonds"].tensileStrength == math.inf and engines["MembraneBonds"].shearStrength == math.inf
 
@@ -68,6 +69,21 @@ def test_selfContactArrives(O, built, tier):
 	scene.setPressure(1e4)
 	O.step()
 	assert contact.pairs == [] and contact.criticalTimeStep() == math.inf
+
+
+def test_facetsArrive(O, built, tier):
+	"""Here so thick that grains touch them in a sheet that is not stretched."""
+	scene, engines, _ = built(tier, bendingStiffness=0.0)
+	facets = engines["MembraneFacetContact"]
+	assert scene.lateralBoundary.facets is facets and facets.bonds is engines["MembraneBonds"]
+	scene.setPressure(1e4)
+	facets.offset = 0.89 * facets.membrane.sphereRadius
+	O.run(300, True)
+	assert facets.grains
+	assert scene.criticalTimeStep() <= 1.01 * facets.criticalTimeStep()
+	tracked = dict(O.energy.items())
+	assert tracked["elastFacet"] > 0
+	assert energy.current()["membrane"] == pytest.approx(tracked["elastFacet"] + tracked["elastMembrane"], rel=1e-12)
 
 
 def test_strengthsArrive(built, tier):

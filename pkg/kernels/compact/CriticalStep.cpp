@@ -36,6 +36,11 @@ void CriticalStep::addBond(int first, int second, const Vec3& branch, double kn,
 	add(grains + first, grains + second, normal, 0.5 * branch, -0.5 * branch, springsAlone(kn, ks));
 }
 
+void CriticalStep::addSupport(int particle, int grain, const Vec3& normal, double kn)
+{
+	add(grains + particle, grain, normal, Vec3::Zero(), Vec3::Zero(), springsAlone(kn, 0));
+}
+
 void CriticalStep::setSheet(const HexStencil& tube, Answer addAnswer)
 {
 	sheet = tube;

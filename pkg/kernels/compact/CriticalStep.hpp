@@ -16,6 +16,8 @@ public:
 	explicit CriticalStep(const SphereAssembly& flat);
 	/// Adds a bond of two membrane particles (local indices), `branch` from the first to the second; ks acts at its middle.
 	void addBond(int first, int second, const Vec3& branch, double kn, double ks);
+	/// Adds a spring between a membrane particle (local index) and a grain (index among all spheres) along a unit vector.
+	void addSupport(int particle, int grain, const Vec3& normal, double kn);
 	/// Gives the membrane's particles further forces that are linear in their displacements, wrapped rows of `tube`, and that have an energy.
 	/// \param addAnswer adds them to its second argument
 	using Answer = std::function<void(const PaddedRings&, PaddedRings&)>;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -42,6 +43,14 @@ void SphereAssembly::setSpheres(const std::vector<Sphere>& all, int count)
 	boundaryContacts.resize(boundaries.size());
 	listed.clear();
 	travelled = 0;
+	startTravel();
+}
+
+// No two orders, of this or another assembly, are taken for the same.
+void SphereAssembly::startTravel()
+{
+	static std::atomic<long> orders{0};
+	gone = {++orders, 0};
 }
 
 void SphereAssembly::setMaterials(const std::vector<ContactMaterial>& table)
@@ -114,6 +123,7 @@ void SphereAssembly::permuteGrains(const std::vector<int>& from)
 	permute(fixed);
 	permute(outside);
 	permute(turned);
+	startTravel();
 }
 
 void SphereAssembly::findPairs(NearPairs& general, std::vector<FrictionlessContacts::Pair>& frictionless) const

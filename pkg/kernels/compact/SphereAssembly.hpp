@@ -84,8 +84,11 @@ public:
 	void endStep()
 	{
 		travelled += furthest;
+		gone.way += furthest;
 		furthest = 0;
 	}
+	/// How far spheres have gone at most since the grains were last put into another order.
+	Travel travel() const { return gone; }
 
 	// State: read and written by the caller between steps
 	std::vector<int> id;
@@ -144,6 +147,8 @@ private:
 	std::vector<int> loaded;
 	bool loadsStale = true; ///< particles that are not in `loaded` may have a load
 	double gap = 0, furthest = 0;
+	Travel gone;
+	void startTravel();
 	long made = 0;
 	std::vector<ContactMaterial> materials;
 	std::vector<PairKind<double>> kinds; ///< of every pair of materials

@@ -3,30 +3,12 @@
 
 #include "kernels/base/CellGrid.hpp"
 #include "kernels/base/Check.hpp"
-#include "kernels/base/Simd.hpp"
+#include "kernels/membrane/RingsMoved.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace hexmembrane {
-
-namespace {
-
-/// Largest of the squared distances of two rows of points; NaN when one is not finite.
-HEXMEMBRANE_WIDEST double furthestSquared(int n, const double* ax, const double* ay, const double* az, const double* bx, const double* by, const double* bz)
-{
-	double most = 0, all = 0;
-#pragma omp simd reduction(max : most) reduction(+ : all)
-	for (int i = 0; i < n; ++i) {
-		const double x = ax[i] - bx[i], y = ay[i] - by[i], z = az[i] - bz[i];
-		const double square = x * x + y * y + z * z;
-		all += square;
-		most = std::max(most, square);
-	}
-	return all - all == 0 ? most : all - all;
-}
-
-} // namespace
 
 SelfContact::SelfContact(const HexStencil& s, double r, double stiffness)
     // less than the 1.46 R that second neighbours are beyond the reach of contacts
@@ -42,18 +24,6 @@ bool SelfContact::bonded(int i, int j) const
 	const int shift = (j % n - i % n + n) % n;
 	if (up == 0) return shift == 1 || shift == n - 1;
 	return up == 1 && (shift == (HexStencil::left(k) + n) % n || shift == HexStencil::right(k));
-}
-
-bool SelfContact::listHolds(const PaddedRings& x) const
-{
-	if (!listed.fits(stencil.perRing, stencil.rings)) return false;
-	const double limit = 0.25 * skin * skin;
-	bool holds = true;
-#pragma omp parallel for schedule(static) reduction(&& : holds)
-	for (int k = 0; k < stencil.rings; ++k)
-		holds = holds &&
-		        furthestSquared(stencil.perRing, x.row(0, k), x.row(1, k), x.row(2, k), listed.row(0, k), listed.row(1, k), listed.row(2, k)) < limit;
-	return holds;
 }
 
 void SelfContact::makeList(const PaddedRings& x)
@@ -78,7 +48,7 @@ void SelfContact::compute(const PaddedRings& x)
 	const int n = stencil.perRing;
 	for (const Pair& pair : pairs)
 		for (const int v : {pair.i, pair.j}) force.set(v / n, v % n, Vec3::Zero());
-	if (!listHolds(x)) makeList(x);
+	if (!nearerThan(0.5 * skin, stencil, x, listed)) makeList(x);
 	pairs.clear();
 	first = stencil.rings;
 	last = -1;

@@ -42,7 +42,6 @@ public:
 	PaddedRings force; ///< zero where nothing touches
 
 private:
-	bool listHolds(const PaddedRings& x) const;
 	void makeList(const PaddedRings& x);
 	bool bonded(int i, int j) const;
 

@@ -17,7 +17,7 @@ import yaml
 
 import hexmembrane
 from hexmembrane.configuration.config import PATHS, Config
-from hexmembrane.configuration.schema import ConfigError, toDict
+from hexmembrane.configuration.schema import ConfigError, paths, toDict
 
 
 def merged(base, changes):
@@ -30,11 +30,13 @@ def merged(base, changes):
 
 
 def derived(config, changes):
-	"""A checked configuration like ``config`` but for ``changes``, such as ``{"boundary": "wall", "specimen": {"seed": 2}}``.
+	"""A checked configuration like ``config`` but for ``changes``, such as ``{"boundary": "wall", "specimen": {"seed": 2}}``; given are its keys and those.
 
 	:raises ConfigError: as :meth:`Config.of`.
 	"""
-	return Config.of(merged(toDict(config), changes))
+	made = Config.of(merged(toDict(config), changes))
+	made.given = config.given | frozenset(paths(changes))
+	return made
 
 
 def load(path):
@@ -110,8 +112,8 @@ def _commit():
 	return said.stdout.strip() if said.returncode == 0 else None
 
 
-def resolved(config):
-	"""The configuration with every default filled in and, under ``made``, date, versions and threads; ready for YAML."""
+def resolved(config, **more):
+	"""The configuration with every default filled in and, under ``made``, date, versions, threads and ``more``; ready for YAML."""
 	origin = {
 		"date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
 		"hexmembrane": hexmembrane.__version__,
@@ -124,12 +126,12 @@ def resolved(config):
 		import yade.config
 
 		origin.update(yade=yade.config.version, threads=yade.wrapper.Omega().numThreads)
-	return {**toDict(config), "made": origin}
+	return {**toDict(config), "made": {**origin, **more}}
 
 
-def save(config, path):
-	"""Write ``resolved(config)`` as YAML, by temporary name and rename."""
+def save(config, path, **more):
+	"""Write ``resolved(config, **more)`` as YAML, by temporary name and rename."""
 	path = pathlib.Path(path)
 	part = path.with_name(path.name + ".part")
-	part.write_text(yaml.safe_dump(resolved(config), sort_keys=False, allow_unicode=True, width=110), encoding="utf-8")
+	part.write_text(yaml.safe_dump(resolved(config, **more), sort_keys=False, allow_unicode=True, width=110), encoding="utf-8")
 	part.replace(path)

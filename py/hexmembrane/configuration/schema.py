@@ -177,6 +177,15 @@ def toDict(instance):
 	return dataclasses.asdict(instance)
 
 
+def paths(values, path=""):
+	"""Paths of the keys in nested dictionaries, such as 'shear.velocity'."""
+	found = []
+	for name, value in values.items():
+		at = f"{path}.{name}" if path else str(name)
+		found += paths(value, at) if isinstance(value, dict) else [at]
+	return found
+
+
 def freeKeys(cls, path=""):
 	"""Paths of the keys in ``cls`` and its sections that are ``free``."""
 	paths = []

@@ -10,8 +10,8 @@ from yade import O
 
 #: YADE's names of the work that comes in, with a minus sign there, as YADE has it with gravity.
 WORK = ("platenWork", "pressureWork", "radialServoWork", "oRingWork", "wallWork")
-#: YADE's names of what the membrane stores: in its bonds, by bending, and where a fold meets itself.
-MEMBRANE = ("elastMembrane", "elastBending", "elastSelfContact")
+#: YADE's names of what the membrane stores: in its bonds, by bending, where a fold meets itself, and where grains press on the sheet between its spheres.
+MEMBRANE = ("elastMembrane", "elastBending", "elastSelfContact", "elastFacet")
 #: YADE's names of what contacts dissipate: sliding, rolling, and the elastic energy that breaking contact bonds set free.
 CONTACT_DISSIPATION = ("plastDissip", "rollDissip", "bondDissip")
 

@@ -39,7 +39,7 @@ class Grains:
 	:param ids: of their bodies.
 	:param solidVolume: of all of them [m3].
 	:param meanDiameter: by volume [m].
-	:param density: [kg/m3].
+	:param density: of their material [kg/m3]; their masses may be raised (``specimen.massScaling``).
 	"""
 
 	ids: list
@@ -52,7 +52,7 @@ class Grains:
 		ids = list(ids)
 		radii = BodyArrays.radii(ids)
 		solid = 4 / 3 * math.pi * float((radii**3).sum())
-		return cls(ids, solid, 2 * float((radii**3).mean()) ** (1 / 3), float(BodyArrays.masses(ids).sum()) / solid)
+		return cls(ids, solid, 2 * float((radii**3).mean()) ** (1 / 3), O.bodies[ids[0]].material.density)
 
 
 def escaped(scene, grains):
@@ -63,11 +63,16 @@ def escaped(scene, grains):
 	return grains.ids[int(numpy.argmax(lost))] if lost.any() else None
 
 
-def soilStress(measured):
-	"""The columns of the soil's stress [Pa] from what ``SoilMeasure.stress()`` gives."""
+def inertialStress(grains, volume):
+	"""Sum f (x) x/V over the grains [Pa], f the sum of all forces on one as it is moved by them."""
+	return BodyArrays.forces(grains.ids).T @ BodyArrays.positions(grains.ids) / volume
+
+
+def soilStress(measured, inertia):
+	"""The columns of the soil's stress [Pa] from what ``SoilMeasure.stress()`` gives, and from :func:`inertialStress`."""
 	columns = {}
-	for name, part in (("soil_{}", "whole"), ("soil_{}_middle", "middle"), ("boundary_{}", "boundary")):
-		stress = measured[part]
+	parts = {"soil_{}": measured["whole"], "soil_{}_middle": measured["middle"], "boundary_{}": measured["boundary"], "inertia_{}": inertia}
+	for name, stress in parts.items():
 		columns[name.format("axial")] = stress[2, 2]
 		columns[name.format("radial")] = 0.5 * (stress[0, 0] + stress[1, 1])
 	axial, radial = columns["soil_axial"], columns["soil_radial"]
@@ -98,7 +103,7 @@ def row(scene, grains, reference, stage, elapsed):
 		"step": O.iter,
 		"time": O.time,
 		"axial_strain": -dz,
-		**soilStress(measured),
+		**soilStress(measured, inertialStress(grains, measured["volume"])),
 		"q_cell": (sum(forces) / 2 - pressure * scene.endArea()) / (volume / height),
 		"sigma3_target": pressure,
 		"sigma3_applied": boundary.appliedPressure,

@@ -46,9 +46,16 @@ COLUMNS = (
 		"boundary_axial",
 		"Pa",
 		"the soil's axial stress from its boundary alone, -sum f (x) x/V over all contacts with platens and membrane or wall, friction included; "
-		"it differs from soil_axial by what inertia takes, a check; compression positive",
+		"without inertia it is soil_axial; compression positive",
 	),
 	Column("boundary_radial", "Pa", "the same, mean of the two horizontal normal stresses"),
+	Column(
+		"inertia_axial",
+		"Pa",
+		"what the grains' resultants f add, sum f (x) x/V over all grains, from the forces that move them: soil_axial = boundary_axial + inertia_axial, a "
+		"check of contacts, boundary and motion; its size against soil_axial says how quasi-static the instant is; compression positive",
+	),
+	Column("inertia_radial", "Pa", "the same, mean of the two horizontal normal stresses"),
 	Column(
 		"q_cell",
 		"Pa",

@@ -11,7 +11,7 @@ from hexmembrane.configuration.schema import freeKeys
 from hexmembrane.output.plots import plot
 from hexmembrane.run import checkpoints, stages
 from hexmembrane.run.progress import clock
-from hexmembrane.scene import builder, specimen
+from hexmembrane.scene import accuracy, builder, specimen
 from hexmembrane.scene.handles import Scene
 
 STAGES = ("specimen", "boundary", "consolidation", "shear")
@@ -53,6 +53,26 @@ def _sameState(config):
 		raise ConfigError("consolidation.pressure", wanted, f"the state was consolidated at {pressure} Pa", "give that pressure")
 
 
+def _wantOwnSettings(config):
+	"""A state has the settings of the test that made it: none may be left to ``accuracy``."""
+	if config.accuracy is not None and (left := accuracy.openKeys(config)):
+		raise ConfigError(
+			"accuracy", config.accuracy, f"leaves {', '.join(left)} open, and a state has those of its own test", "take them from that test's config.yaml"
+		)
+
+
+def _settle(config, say):
+	"""Choose what ``accuracy`` leaves open; the error budget of the settings."""
+	radii = specimen.plannedRadii(config)
+	if config.accuracy is not None:
+		chosen = accuracy.choose(config, radii)
+		say(f"accuracy {100 * config.accuracy:g} %: " + ", ".join(f"{key} = {value:g}" for key, value in chosen.items()))
+	budget = accuracy.budget(config, radii)
+	for line in budget.lines():
+		say(line)
+	return budget
+
+
 def run(config, out, resume=False, until="shear", start=None, quiet=False):
 	"""Run the stages of a test into a folder.
 
@@ -75,6 +95,9 @@ def run(config, out, resume=False, until="shear", start=None, quiet=False):
 		if not quiet:
 			print(text, flush=True)
 
+	if start is not None:
+		_wantOwnSettings(config)
+	budget = _settle(config, (lambda text: None) if resume else say)
 	if resume:
 		facts = checkpoints.read(out)
 		_sameTest(config, out)
@@ -87,11 +110,11 @@ def run(config, out, resume=False, until="shear", start=None, quiet=False):
 		_sameState(config)
 		builder.setTier(config)
 		O.trackEnergy = config.output.energy
-		configuration.save(config, out / "config.yaml")
+		configuration.save(config, out / "config.yaml", budget=budget.asDict())
 		test = stages.TriaxialTest(config, out, quiet)
 		test.beginShear()
 	else:
-		configuration.save(config, out / "config.yaml")
+		configuration.save(config, out / "config.yaml", budget=budget.asDict())
 		packing = specimen.provide(config, out, say)
 		if until == "specimen":
 			return None

@@ -87,6 +87,7 @@ class TriaxialTest:
 		except RuntimeError as error:
 			why = str(error)
 		if why or O.iter != wanted:
+			why = why or _lostError()
 			raise StageError(
 				f"{self.stage}.step = {O.iter}: YADE stopped before step {wanted}: {self._torn()}{why or 'see its messages above'}; "
 				f"fix: go on from the last checkpoint in '{self.out}', with a smaller numerics.safety, a slower test or what else is said here"
@@ -337,6 +338,15 @@ class TriaxialTest:
 	def _maybeCheckpoint(self):
 		if self._checkpointDue():
 			self.checkpoint()
+
+
+def _lostError():
+	"""The error that YADE loses when a run in its thread ends before ``O.run`` waits for it: the next step meets it again; '' when it does not."""
+	try:
+		O.step()
+	except RuntimeError as error:
+		return str(error)
+	return ""
 
 
 def load(path):

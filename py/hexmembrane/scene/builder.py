@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Builds YADE's scene of a test: materials, grains, lateral boundary, end platens and the list of engines of its tier; sets its time step."""
 
+import dataclasses
 import math
 
 import yade
@@ -23,6 +24,19 @@ def _materials(config):
 	common = {"emod": grain.emod, "kratio": grain.kratio, "density": grain.density}
 	O.materials.append(yade.LinearMat(friction=grain.friction, rollingFriction=grain.rollingFriction, label="grain", **common))
 	O.materials.append(yade.LinearMat(friction=platens.friction, label="platen", **common))
+
+
+def _raiseMasses(config, ids, radii, say):
+	"""Give the grains the masses of ``specimen.massScaling``; the material keeps the grains' true density."""
+	for state, factor in zip((O.bodies[i].state for i in ids), timestep.massFactors(radii).tolist()):
+		state.mass *= factor
+		state.inertia *= factor
+	true = timestep.sphereMass(radii, config.specimen.density)
+	steps = [timestep.grainStep(dataclasses.replace(config.specimen, massScaling=raised), radii) for raised in (True, False)]
+	say(
+		f"grains' mass times {(true * timestep.massFactors(radii)).sum() / true.sum():.3g}, {timestep.massFactors(radii).max():.3g} for the smallest: their "
+		f"critical step is {steps[0]:.4g} s instead of {steps[1]:.4g} s"
+	)
 
 
 def _platens(config, parts):
@@ -95,7 +109,9 @@ def build(config, packing, say=print):
 	"""
 	_wantEmpty()
 	_materials(config)
-	O.bodies.append([utils.sphere(tuple(c), r, material="grain") for c, r in zip(packing.centres.tolist(), packing.radii.tolist())])
+	grains = O.bodies.append([utils.sphere(tuple(c), r, material="grain") for c, r in zip(packing.centres.tolist(), packing.radii.tolist())])
+	if config.specimen.massScaling:
+		_raiseMasses(config, grains, packing.radii, say)
 	parts = CLASSES[config.boundary].make(config, packing)
 	bottom, top = _platens(config, parts)
 	smallest = float(packing.radii.min())
@@ -108,13 +124,13 @@ def build(config, packing, say=print):
 	O.engines = _engines(config, [*servos, *before, *drives, *after], min(smallest, parts.smallestRadius))
 	O.trackEnergy = config.output.energy
 	scene = Scene()
-	_setTimeStep(config, timestep.grainStep(config.specimen, smallest), parts, say)
+	_setTimeStep(config, timestep.grainStep(config.specimen, packing.radii), parts, say)
 	for line in parts.log:
 		say(line)
 	level = timestep.stiffnessLevel(config.specimen.emod, config.consolidation.pressure)
 	say(
 		f"grains: {len(packing.radii)}, kn/(p d) = {level:.4g} at {1e-3 * config.consolidation.pressure:g} kPa"
-		+ ("" if level >= 300 else "; WARNING: below 300 the grains are soft and overlaps are not small; fix: raise specimen.emod")
+		+ ("" if level >= 300 else "; WARNING: below 300 the grains are soft and overlaps are not small, see the error budget; fix: raise specimen.emod")
 	)
 	return scene
 

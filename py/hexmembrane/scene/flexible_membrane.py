@@ -104,14 +104,19 @@ def sheetEngines(keys, membrane, bending):
 	return sheet
 
 
+def facetEngines(keys, membrane, bonds):
+	"""The engine that keeps grains from pressing themselves through a stretched mesh, as configured: a list of one or none."""
+	return [yade.MembraneFacetContact(membrane=membrane, bonds=bonds)] if keys.facets else []
+
+
 def sheetStep(sheet):
 	"""A lower bound of the critical step [s] of the sheet alone: the highest squares of the frequencies of its engines at once."""
 	return sum(engine.criticalTimeStep() ** -2 for engine in sheet) ** -0.5
 
 
 class FlexibleMembrane(LateralBoundary):
-	"""Handles: ``membrane``, ``bonds``, ``sheet`` (the engines of :func:`sheetEngines`), ``pressureEngine`` (MembranePressure), ``radialServo``
-	(MembraneRadialServo, None without rows beside the platens), ``oRings``."""
+	"""Handles: ``membrane``, ``bonds``, ``sheet`` (the engines of :func:`sheetEngines`), ``facets`` (MembraneFacetContact, None when off),
+	``pressureEngine`` (MembranePressure), ``radialServo`` (MembraneRadialServo, None without rows beside the platens), ``oRings``."""
 
 	name = "membrane"
 
@@ -119,6 +124,7 @@ class FlexibleMembrane(LateralBoundary):
 		self.bonds = singleEngine(engines, "MembraneBonds")
 		others = (optionalEngine(engines, name) for name in ("MembraneBending", "MembraneSelfContact"))
 		self.sheet = [self.bonds, *(engine for engine in others if engine)]
+		self.facets = optionalEngine(engines, "MembraneFacetContact")
 		self.pressureEngine = singleEngine(engines, "MembranePressure")
 		self.radialServo = optionalEngine(engines, "MembraneRadialServo")
 		self.oRings = singleEngine(engines, "MembraneORings")
@@ -135,7 +141,7 @@ class FlexibleMembrane(LateralBoundary):
 		bending = bendingStiffness(config, packing.radii)
 		sheet = sheetEngines(keys, membrane, bending)
 		unscaled = timestep.membraneStep(config.specimen, keys.density, largest, membrane.sphereRadius, sheetStep(sheet))
-		scaling = timestep.densityScaling(keys.densityScaling, timestep.grainStep(config.specimen, smallest), unscaled)
+		scaling = timestep.densityScaling(keys.densityScaling, timestep.grainStep(config.specimen, packing.radii), unscaled)
 		scaleDensity(membrane, scaling)
 
 		inertial = timestep.inertialTime(packing.radii, config.specimen.density, config.consolidation.pressure)
@@ -145,6 +151,7 @@ class FlexibleMembrane(LateralBoundary):
 		def engines(bottom, top):
 			before = [
 				*sheet,
+				*facetEngines(keys, membrane, sheet[0]),
 				yade.MembranePressure(membrane=membrane, pressure=0.0, surface=keys.surface, timeConstant=pressureTime),
 			]
 			if 2 in membrane.groups:
@@ -273,6 +280,9 @@ class FlexibleMembrane(LateralBoundary):
 
 	def addFrequencySquare(self, square):
 		square[self.membrane.ids] += (2 / sheetStep(self.sheet)) ** 2
+		step = self.facets.criticalTimeStep() if self.facets else math.inf
+		if step < math.inf:
+			square[[*self.membrane.ids, *self.facets.grains]] += (2 / step) ** 2
 
 	def surface(self, startRadius):
 		"""A surface through the centres; arrays: :mod:`hexmembrane.output.vtk`."""

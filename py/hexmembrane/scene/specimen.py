@@ -67,6 +67,13 @@ def radii(keys, radius, height):
 	return curve.sample(count, keys.seed)
 
 
+def plannedRadii(config):
+	"""Radii [m] of the grains that :func:`provide` will give, without packing them."""
+	if config.specimen.packing is not None:
+		return _load(config.specimen.packing).radii
+	return radii(config.specimen, soilRadius(config), config.specimen.height)
+
+
 def make(config, say):
 	"""Pack the grains of the configuration's gradation into the cylinder that its lateral boundary will enclose.
 
@@ -105,13 +112,17 @@ def provide(config, out, say):
 	return packing
 
 
+def _load(path):
+	try:
+		return packing_file.load(path)
+	except (OSError, ValueError) as error:
+		raise ConfigError("specimen.packing", path, f"is no packing ({error})", "see the end of that message") from None
+
+
 def _read(config, say):
 	"""The packing in the configuration's file, which must fit its specimen."""
 	keys = config.specimen
-	try:
-		packing = packing_file.load(keys.packing)
-	except (OSError, ValueError) as error:
-		raise ConfigError("specimen.packing", keys.packing, f"is no packing ({error})", "see the end of that message") from None
+	packing = _load(keys.packing)
 	for name, has, wants in (("radius", packing.radius, soilRadius(config)), ("height", packing.height, keys.height)):
 		if abs(has - wants) > 1e-9 * wants:
 			raise ConfigError("specimen.packing", keys.packing, f"has {name} {has:.9g} m, this specimen needs {wants:.9g} m", f"set specimen.{name} right")

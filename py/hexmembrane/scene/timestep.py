@@ -38,18 +38,32 @@ def inertialTime(radii, density, pressure):
 	return diameter * math.sqrt(density / pressure)
 
 
-def grainStep(specimen, smallest):
+def massFactors(radii):
+	"""Factors on the grains' masses and moments of inertia with ``specimen.massScaling``: (r_max/r)^2.
+
+	2/omega of a grain among its equals goes with sqrt(m/kn), and kn with r. It is that of the largest grain with m = m_max r/r_max, and m itself goes
+	with r^3.
+
+	:param radii: of the grains [m].
+	"""
+	return (numpy.max(radii) / numpy.asarray(radii)) ** 2
+
+
+def grainStep(specimen, radii):
 	"""Critical step [s] of the grains before there are contacts: CONTACTS equal neighbours stand all round a smallest grain.
+
+	With ``specimen.massScaling`` it is that of a largest grain, which all grains then have.
 
 	Their normals are spread evenly, so each direction has a third of kn and two thirds of ks, and each axis of rotation two thirds of
 	ks R^2. Twice that, over m and over 0.4 m R^2, is omega^2 of neighbours that move against each other and of spheres that all spin alike.
 
 	:param specimen: configuration's specimen section.
-	:param smallest: smallest grain radius [m].
+	:param radii: of the grains, or one radius [m].
 	"""
-	kn = contactStiffness(specimen.emod, smallest, smallest)
+	radius = float(numpy.max(radii) if specimen.massScaling else numpy.min(radii))
+	kn = contactStiffness(specimen.emod, radius, radius)
 	translation, rotation = 1 + 2 / specimen.kratio, 2 / specimen.kratio / 0.4
-	return 2 / math.sqrt(2 * CONTACTS / 3 * kn * max(translation, rotation) / sphereMass(smallest, specimen.density))
+	return 2 / math.sqrt(2 * CONTACTS / 3 * kn * max(translation, rotation) / sphereMass(radius, specimen.density))
 
 
 def membraneStep(specimen, density, largest, particleRadius, sheetStep):
