@@ -18,12 +18,9 @@ namespace {
 
 boost::python::object tensors(const vector<Matrix3r>& each, const vector<Real>& divisors)
 {
-	vector<Real> rows;
-	rows.reserve(9 * each.size());
-	for (size_t g = 0; g < each.size(); ++g)
-		for (int i = 0; i < 3; ++i)
-			for (int j = 0; j < 3; ++j) rows.push_back(divisors[g] > 0 ? each[g](i, j) / divisors[g] : NaN);
-	return numpyArray(rows, "f8", 9).attr("reshape")(-1, 3, 3);
+	vector<Matrix3r> quotients;
+	for (size_t g = 0; g < each.size(); ++g) quotients.push_back(each[g] / (divisors[g] > 0 ? divisors[g] : NaN));
+	return numpyTensors(quotients);
 }
 
 hexmembrane::PowerSite siteOf(const Scene& scene, Body::id_t id)

@@ -92,7 +92,7 @@ void MembraneFacetContact::forEachContact(const VisitContact& visit) const
 			const Real share = contact.shares[c];
 			if (share == 0) continue;
 			visit({membrane->ids[contact.corners[c]], contact.id, contact.places[c], contact.centre, contact.point, share * forceOf(contact),
-			       share * builtStiffness * contact.overlap});
+			       share * builtStiffness * contact.overlap, 0});
 		}
 }
 

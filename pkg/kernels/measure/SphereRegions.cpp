@@ -128,7 +128,7 @@ SphereRegions::SphereRegions(std::vector<MeasuredGrain> unsorted, std::vector<Me
 		const MeasuredContact& c = contacts[i];
 		const bool grainsTouch = c.first >= 0 && c.second >= 0;
 		const Vec3 branch = c.end - c.start;
-		const double length = branch.norm(), tangential = std::sqrt(std::max(0., c.force.squaredNorm() - c.normalForce * c.normalForce));
+		const double length = branch.norm();
 		reaches.push_back({points[i], std::max(0.5 * length, (c.point - points[i]).norm())});
 		longestReach = std::max(longestReach, reaches.back().radius);
 		branches.push_back({c.start, branch, c.point});
@@ -138,8 +138,8 @@ SphereRegions::SphereRegions(std::vector<MeasuredGrain> unsorted, std::vector<Me
 		if (grainsTouch) sum.overlap = lensVolume(unsorted[c.first].radius, unsorted[c.second].radius, length);
 		if (grainsTouch && c.normalForce > 0) {
 			sum.compressed = 1;
-			// the law cuts the tangential force to the limit with another rounding
-			const double limit = (1 - 1e-6) * c.friction * c.normalForce;
+			// the tangential springs' force may lean out of the contact plane a little; the law cuts its size, with another rounding
+			const double tangential = (c.force - c.normalForce / length * branch).norm(), limit = (1 - 1e-6) * c.friction * c.normalForce;
 			sum.sliding = std::isnan(limit) ? nan : tangential >= limit;
 		}
 		sums.push_back(sum);
