@@ -26,19 +26,19 @@ HEXMEMBRANE_WIDEST void moveWidest(GrainMotion& s)
 		if (s.energies) addEnergies(s, i);
 		// velocity and the first component of the spin lie together, then the other two
 		double* const motion = s.motions[i].velocity.data();
-		Lanes low = load4(motion);
-		HalfLanes high = load2(motion + 4);
+		Four low = load<Four>(motion);
+		Two high = load<Two>(motion + 4);
 		if (!s.fixed[i]) {
-			const double* const load = s.loads[i].force.data();
-			const HalfLanes inverse = 1 / HalfLanes{s.mass[i], s.inertia[i]};
-			low = dampedStep(low, load4(load), __builtin_shufflevector(inverse, inverse, 0, 0, 0, 1), s.dt, s.damping);
-			high = dampedStep(high, load2(load + 4), __builtin_shufflevector(inverse, inverse, 1, 1), s.dt, s.damping);
-			store4(motion, low);
-			store2(motion + 4, high);
+			const double* const acting = s.loads[i].force.data();
+			const Two inverse = 1 / Two{s.mass[i], s.inertia[i]};
+			low = dampedStep(low, load<Four>(acting), __builtin_shufflevector(inverse, inverse, 0, 0, 0, 1), s.dt, s.damping);
+			high = dampedStep(high, load<Two>(acting + 4), __builtin_shufflevector(inverse, inverse, 1, 1), s.dt, s.damping);
+			store(motion, low);
+			store(motion + 4, high);
 		}
 		double* const place = s.places[i].centre.data();
-		const Lanes noTurn = __builtin_shufflevector(low, lanes(0), 0, 1, 2, 4); // the radius stays
-		store4(place, load4(place) + s.dt * noTurn);
+		const Four noTurn = __builtin_shufflevector(low, Four{}, 0, 1, 2, 4); // the radius stays
+		store(place, load<Four>(place) + s.dt * noTurn);
 		double* const turned = s.turned[i].data();
 		turned[0] += s.dt * low[3];
 		turned[1] += s.dt * high[0];
