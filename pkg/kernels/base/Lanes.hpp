@@ -97,6 +97,7 @@ struct Rows {
 	template <class At>
 	HEXMEMBRANE_INLINE void stored(const At& at) const
 	{
+#pragma GCC unroll 8
 		for (int k = 0; k < laneCount<V>; ++k) store(at(k), row(k));
 	}
 	HEXMEMBRANE_INLINE Four row(int k) const
@@ -150,6 +151,18 @@ struct Rows {
 			return {{__builtin_shufflevector(evenAb, evenCd, 0, 1, 8, 9, 2, 3, 10, 11), __builtin_shufflevector(oddAb, oddCd, 0, 1, 8, 9, 2, 3, 10, 11),
 			         __builtin_shufflevector(evenAb, evenCd, 4, 5, 12, 13, 6, 7, 14, 15), __builtin_shufflevector(oddAb, oddCd, 4, 5, 12, 13, 6, 7, 14, 15)}};
 		}
+	}
+	/// The first three numbers of these rows, then the fourth of `others`.
+	HEXMEMBRANE_INLINE Rows withFourth(const Rows& others) const
+	{
+		Rows rows;
+		if constexpr (laneCount<V> == 2)
+			rows = {{part[0], __builtin_shufflevector(part[1], others.part[1], 0, 3), part[2], __builtin_shufflevector(part[3], others.part[3], 0, 3)}};
+		else if constexpr (laneCount<V> == 4)
+			for (int i = 0; i < 4; ++i) rows.part[i] = __builtin_shufflevector(part[i], others.part[i], 0, 1, 2, 7);
+		else
+			for (int i = 0; i < 4; ++i) rows.part[i] = __builtin_shufflevector(part[i], others.part[i], 0, 1, 2, 11, 4, 5, 6, 15);
+		return rows;
 	}
 	/// The first two numbers of these rows, then those of `others`.
 	HEXMEMBRANE_INLINE Rows withFirstTwo(const Rows& others) const

@@ -17,6 +17,7 @@ struct PairGeometry {
 		int count = 0;
 		int contact[sweepStretch + width], first[sweepStretch + width], second[sweepStretch + width];
 		alignas(32) double branch[sweepStretch + width][4]; ///< from centre to centre, and the sum of the radii
+		double radius[sweepStretch + width];                ///< of the first
 		Passing<V> groups[sweepStretch / width + 1];
 		V arm1[sweepStretch / width + 1], arm2[sweepStretch / width + 1]; ///< from the centres to the contact point
 
@@ -25,6 +26,7 @@ struct PairGeometry {
 			contact[to] = contact[from];
 			first[to] = first[from];
 			second[to] = second[from];
+			radius[to] = radius[from];
 			store(branch[to], load<Four>(branch[from]));
 		}
 	};
@@ -49,37 +51,49 @@ struct PairGeometry {
 		loadOf(s.second[p]) += {force, m.arm2.cross(contact.memory.shear) + moment};
 	}
 
-	HEXMEMBRANE_INLINE bool pick(int p, int end, Batch& batch) const
+	/// Of the pairs p .. p + n - 1, n at most the width.
+	HEXMEMBRANE_INLINE unsigned char pickGroup(int p, int n, Batch& batch) const
 	{
-		const int *const first = s.first, *const second = s.second;
-		const unsigned char* const bits = s.store->bits.data();
-		const Place* const places = s.places;
-		int count = batch.count;
+		const int *const first = s.first + p, *const second = s.second + p;
+		const unsigned char* const bits = s.store->bits.data() + p;
+		const StoredContact<double>* const contacts = s.store->contacts.data() + p;
+		const auto placesOf = [&](const int* spheres) __attribute__((always_inline))
+		{
+			return Rows<V>::loaded([&](int k) __attribute__((always_inline)) { return s.places[spheres[k < n ? k : 0]].centre.data(); });
+		};
+		const Rows<V> one = placesOf(first), two = placesOf(second), branch = (two - one).withFourth(two + one);
+		Lanes3<V> between;
+		V reach;
+		branch.columns(between.x, between.y, between.z, reach);
+		const LaneMask<V> apart = dot(between, between) > reach * reach;
 		unsigned char any = 0;
-		for (; p < end; ++p) {
-			const int i = first[p], j = second[p];
-			// what later passes need of the second sphere; the first one was there for the pair before
-			__builtin_prefetch(s.motions + j);
-			__builtin_prefetch(&loadOf(j), 1);
-			const Four a = load<Four>(places[i].centre.data()), b = load<Four>(places[j].centre.data());
-			const Four branch = __builtin_shufflevector(b - a, b + a, 0, 1, 2, 7);
-			store(batch.branch[count], branch);
-			batch.contact[count] = p;
-			batch.first[count] = i;
-			batch.second[count] = j;
-			const double square = branch[0] * branch[0] + branch[1] * branch[1] + branch[2] * branch[2];
-			count += (!(square > branch[3] * branch[3]) & (bits[p] < contactBonded)) | (bits[p] == contactTouching);
-			any |= bits[p];
+		int count = batch.count;
+#pragma GCC unroll 8
+		for (int k = 0; k < width; ++k) {
+			if (k >= n) break;
+			// what later passes need of the second sphere and of the contact; the first sphere was there for the pair before
+			__builtin_prefetch(s.motions + second[k]);
+			__builtin_prefetch(&loadOf(second[k]), 1);
+			__builtin_prefetch(contacts + k, 1);
+			__builtin_prefetch(&contacts[k].springs, 1);
+			store(batch.branch[count], branch.row(k));
+			batch.radius[count] = s.places[first[k]].radius;
+			batch.contact[count] = p + k;
+			batch.first[count] = first[k];
+			batch.second[count] = second[k];
+			count += ((apart[k] == 0) & (bits[k] < contactBonded)) | (bits[k] == contactTouching);
+			any |= bits[k];
 		}
 		batch.count = count;
-		return any & contactBonded;
+		return any;
 	}
 
-	HEXMEMBRANE_INLINE V radii(const int* index) const
+	HEXMEMBRANE_INLINE bool pick(int p, int end, Batch& batch) const
 	{
-		V radius{};
-		for (int k = 0; k < width; ++k) radius[k] = s.places[index[k]].radius;
-		return radius;
+		unsigned char any = 0;
+		for (; p + width <= end; p += width) any |= pickGroup(p, width, batch);
+		if (p < end) any |= pickGroup(p, end - p, batch);
+		return any & contactBonded;
 	}
 
 	HEXMEMBRANE_INLINE void measure(Batch& batch, int f) const
@@ -92,8 +106,9 @@ struct PairGeometry {
 		const V distance = squareRoot(dot(branch, branch));
 		group.normal = (1 / distance) * branch;
 		group.overlap = reach - distance;
-		batch.arm1[f] = radii(batch.first + at) - 0.5 * group.overlap;
-		batch.arm2[f] = radii(batch.second + at) - 0.5 * group.overlap;
+		const V radius = load<V>(batch.radius + at);
+		batch.arm1[f] = radius - 0.5 * group.overlap;
+		batch.arm2[f] = (reach - radius) - 0.5 * group.overlap;
 	}
 
 	HEXMEMBRANE_INLINE void follow(Batch& batch, int f) const
@@ -126,6 +141,7 @@ struct PairGeometry {
 		const Lanes3<V> torque1 = batch.arm1[f] * turning + group.moment, torque2 = group.moment - batch.arm2[f] * turning;
 		const auto low1 = Rows<V>::ofColumns(force.x, force.y, force.z, torque1.x), low2 = Rows<V>::ofColumns(force.x, force.y, force.z, torque2.x);
 		const auto both = Rows<V>::ofColumns(torque1.y, torque1.z, torque2.y, torque2.z);
+#pragma GCC unroll 8
 		for (int k = 0; k < width; ++k) {
 			double *one = s.loads[batch.first[at + k]].force.data(), *two = loadOf(batch.second[at + k]).force.data();
 			store(one, load<Four>(one) - low1.row(k));
