@@ -17,7 +17,6 @@ struct PairGeometry {
 		int count = 0;
 		int contact[sweepStretch + width], first[sweepStretch + width], second[sweepStretch + width];
 		alignas(32) double branch[sweepStretch + width][4]; ///< from centre to centre, and the sum of the radii
-		double radius[sweepStretch + width];                ///< of the first
 		Passing<V> groups[sweepStretch / width + 1];
 		V arm1[sweepStretch / width + 1], arm2[sweepStretch / width + 1]; ///< from the centres to the contact point
 
@@ -26,7 +25,6 @@ struct PairGeometry {
 			contact[to] = contact[from];
 			first[to] = first[from];
 			second[to] = second[from];
-			radius[to] = radius[from];
 			store(branch[to], load<Four>(branch[from]));
 		}
 	};
@@ -51,12 +49,12 @@ struct PairGeometry {
 		loadOf(s.second[p]) += {force, m.arm2.cross(contact.memory.shear) + moment};
 	}
 
-	/// Of the pairs p .. p + n - 1, n at most the width.
+	/// Of the pairs p .. p + n - 1, n at most the width. \return the bits of all of them
 	HEXMEMBRANE_INLINE unsigned char pickGroup(int p, int n, Batch& batch) const
 	{
 		const int *const first = s.first + p, *const second = s.second + p;
-		const unsigned char* const bits = s.store->bits.data() + p;
 		const StoredContact<double>* const contacts = s.store->contacts.data() + p;
+		const unsigned char* const bits = s.store->bits.data() + p;
 		const auto placesOf = [&](const int* spheres) __attribute__((always_inline))
 		{
 			return Rows<V>::loaded([&](int k) __attribute__((always_inline)) { return s.places[spheres[k < n ? k : 0]].centre.data(); });
@@ -65,7 +63,7 @@ struct PairGeometry {
 		Lanes3<V> between;
 		V reach;
 		branch.columns(between.x, between.y, between.z, reach);
-		const LaneMask<V> apart = dot(between, between) > reach * reach;
+		const LaneMask<V> near = dot(between, between) > reach * reach ? LaneMask<V>{} : LaneMask<V>{} + 1;
 		unsigned char any = 0;
 		int count = batch.count;
 #pragma GCC unroll 8
@@ -73,15 +71,15 @@ struct PairGeometry {
 			if (k >= n) break;
 			// what later passes need of the second sphere and of the contact; the first sphere was there for the pair before
 			__builtin_prefetch(s.motions + second[k]);
-			__builtin_prefetch(&loadOf(second[k]), 1);
+			__builtin_prefetch(s.loads + second[k], 1);
 			__builtin_prefetch(contacts + k, 1);
 			__builtin_prefetch(&contacts[k].springs, 1);
 			store(batch.branch[count], branch.row(k));
-			batch.radius[count] = s.places[first[k]].radius;
 			batch.contact[count] = p + k;
 			batch.first[count] = first[k];
 			batch.second[count] = second[k];
-			count += ((apart[k] == 0) & (bits[k] < contactBonded)) | (bits[k] == contactTouching);
+			// those that touch, or did, and have no bond
+			count += (int(near[k]) | bits[k]) & ~(bits[k] / contactBonded) & 1;
 			any |= bits[k];
 		}
 		batch.count = count;
@@ -106,7 +104,8 @@ struct PairGeometry {
 		const V distance = squareRoot(dot(branch, branch));
 		group.normal = (1 / distance) * branch;
 		group.overlap = reach - distance;
-		const V radius = load<V>(batch.radius + at);
+		V radius{};
+		for (int k = 0; k < width; ++k) radius[k] = s.places[batch.first[at + k]].radius;
 		batch.arm1[f] = radius - 0.5 * group.overlap;
 		batch.arm2[f] = (reach - radius) - 0.5 * group.overlap;
 	}
