@@ -65,7 +65,10 @@ void setLane(Lanes3<V>& to, int k, const Vec3& v)
 }
 
 template <class V>
-Vec3 lane(const Lanes3<V>& v, int k) { return {v.x[k], v.y[k], v.z[k]}; }
+Vec3 lane(const Lanes3<V>& v, int k)
+{
+	return {v.x[k], v.y[k], v.z[k]};
+}
 
 template <class V>
 Passing<V> passing(const std::vector<Case>& all, int at)

@@ -91,8 +91,8 @@ struct Rows {
 		else if constexpr (laneCount<V> == 4)
 			return {{load<V>(at(0)), load<V>(at(1)), load<V>(at(2)), load<V>(at(3))}};
 		else
-			return {{joined(load<Four>(at(0)), load<Four>(at(2))), joined(load<Four>(at(1)), load<Four>(at(3))), joined(load<Four>(at(4)), load<Four>(at(6))),
-			         joined(load<Four>(at(5)), load<Four>(at(7)))}};
+			return {{joined(load<Four>(at(0)), load<Four>(at(2))), joined(load<Four>(at(1)), load<Four>(at(3))),
+			         joined(load<Four>(at(4)), load<Four>(at(6))), joined(load<Four>(at(5)), load<Four>(at(7)))}};
 	}
 	template <class At>
 	HEXMEMBRANE_INLINE void stored(const At& at) const
@@ -128,8 +128,10 @@ struct Rows {
 			c = __builtin_shufflevector(evenPq, evenRs, 2, 3, 6, 7);
 			d = __builtin_shufflevector(oddPq, oddRs, 2, 3, 6, 7);
 		} else {
-			const V evenPq = __builtin_shufflevector(p, q, 0, 8, 2, 10, 4, 12, 6, 14), oddPq = __builtin_shufflevector(p, q, 1, 9, 3, 11, 5, 13, 7, 15);
-			const V evenRs = __builtin_shufflevector(r, s, 0, 8, 2, 10, 4, 12, 6, 14), oddRs = __builtin_shufflevector(r, s, 1, 9, 3, 11, 5, 13, 7, 15);
+			const V evenPq = __builtin_shufflevector(p, q, 0, 8, 2, 10, 4, 12, 6, 14),
+			        oddPq = __builtin_shufflevector(p, q, 1, 9, 3, 11, 5, 13, 7, 15);
+			const V evenRs = __builtin_shufflevector(r, s, 0, 8, 2, 10, 4, 12, 6, 14),
+			        oddRs = __builtin_shufflevector(r, s, 1, 9, 3, 11, 5, 13, 7, 15);
 			a = __builtin_shufflevector(evenPq, evenRs, 0, 1, 4, 5, 8, 9, 12, 13);
 			b = __builtin_shufflevector(oddPq, oddRs, 0, 1, 4, 5, 8, 9, 12, 13);
 			c = __builtin_shufflevector(evenPq, evenRs, 2, 3, 6, 7, 10, 11, 14, 15);
@@ -146,10 +148,14 @@ struct Rows {
 			Rows{{a, b, c, d}}.columns(rows.part[0], rows.part[1], rows.part[2], rows.part[3]);
 			return rows;
 		} else {
-			const V evenAb = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14), oddAb = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
-			const V evenCd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14), oddCd = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
-			return {{__builtin_shufflevector(evenAb, evenCd, 0, 1, 8, 9, 2, 3, 10, 11), __builtin_shufflevector(oddAb, oddCd, 0, 1, 8, 9, 2, 3, 10, 11),
-			         __builtin_shufflevector(evenAb, evenCd, 4, 5, 12, 13, 6, 7, 14, 15), __builtin_shufflevector(oddAb, oddCd, 4, 5, 12, 13, 6, 7, 14, 15)}};
+			const V evenAb = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14),
+			        oddAb = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+			const V evenCd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14),
+			        oddCd = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+			return {{__builtin_shufflevector(evenAb, evenCd, 0, 1, 8, 9, 2, 3, 10, 11),
+			         __builtin_shufflevector(oddAb, oddCd, 0, 1, 8, 9, 2, 3, 10, 11),
+			         __builtin_shufflevector(evenAb, evenCd, 4, 5, 12, 13, 6, 7, 14, 15),
+			         __builtin_shufflevector(oddAb, oddCd, 4, 5, 12, 13, 6, 7, 14, 15)}};
 		}
 	}
 	/// The first three numbers of these rows, then the fourth of `others`.
@@ -157,7 +163,8 @@ struct Rows {
 	{
 		Rows rows;
 		if constexpr (laneCount<V> == 2)
-			rows = {{part[0], __builtin_shufflevector(part[1], others.part[1], 0, 3), part[2], __builtin_shufflevector(part[3], others.part[3], 0, 3)}};
+			rows = {{part[0], __builtin_shufflevector(part[1], others.part[1], 0, 3), part[2],
+			         __builtin_shufflevector(part[3], others.part[3], 0, 3)}};
 		else if constexpr (laneCount<V> == 4)
 			for (int i = 0; i < 4; ++i) rows.part[i] = __builtin_shufflevector(part[i], others.part[i], 0, 1, 2, 7);
 		else

@@ -10,11 +10,11 @@
 ///
 /// HEXMEMBRANE_WIDEST_LANES(head, call) is the same for a function whose arithmetic is written over lanes (Lanes.hpp): `call` returns what the function does
 /// and is compiled with `width`, how many doubles the set's registers hold: 8 by v4, 4 by v3, 2 by default.
-#define HEXMEMBRANE_WITH_WIDTH(head, lanesOfSet, ...) \
-	head \
-	{ \
-		constexpr int width = lanesOfSet; \
-		return __VA_ARGS__; \
+#define HEXMEMBRANE_WITH_WIDTH(head, lanesOfSet, ...)                                                                                                          \
+	head                                                                                                                                                   \
+	{                                                                                                                                                      \
+		constexpr int width = lanesOfSet;                                                                                                              \
+		return __VA_ARGS__;                                                                                                                            \
 	}
 
 #if defined(HEXMEMBRANE_SIMD_AUTO)
@@ -22,10 +22,10 @@
 #error "HEXMEMBRANE_SIMD = auto: the processor's choice comes before a sanitizer's start-up; fix: -DHEXMEMBRANE_SIMD=default, v3 or v4"
 #endif
 #define HEXMEMBRANE_WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#define HEXMEMBRANE_WIDEST_LANES(head, ...) \
-	__attribute__((target("arch=x86-64-v4"))) HEXMEMBRANE_WITH_WIDTH(head, 8, __VA_ARGS__) \
-	__attribute__((target("arch=x86-64-v3"))) HEXMEMBRANE_WITH_WIDTH(head, 4, __VA_ARGS__) \
-	__attribute__((target("default"))) HEXMEMBRANE_WITH_WIDTH(head, 2, __VA_ARGS__)
+#define HEXMEMBRANE_WIDEST_LANES(head, ...)                                                                                                                    \
+	__attribute__((target("arch=x86-64-v4"))) HEXMEMBRANE_WITH_WIDTH(head, 8, __VA_ARGS__)                                                                 \
+	        __attribute__((target("arch=x86-64-v3"))) HEXMEMBRANE_WITH_WIDTH(head, 4, __VA_ARGS__)                                                         \
+	                __attribute__((target("default"))) HEXMEMBRANE_WITH_WIDTH(head, 2, __VA_ARGS__)
 #elif defined(HEXMEMBRANE_SIMD_V4)
 #define HEXMEMBRANE_WIDEST __attribute__((target("arch=x86-64-v4")))
 #define HEXMEMBRANE_WIDEST_LANES(head, ...) HEXMEMBRANE_WIDEST HEXMEMBRANE_WITH_WIDTH(head, 8, __VA_ARGS__)

@@ -85,8 +85,9 @@ private:
 	template <int... row>
 	HEXMEMBRANE_INLINE void load(const StoredContact<double>* all, V* numbers, std::integer_sequence<int, row...>) const
 	{
-		(Rows<V>::loaded([&](int k) __attribute__((always_inline)) { return at<row>(all, k); })
-		         .columns(numbers[4 * row], numbers[4 * row + 1], numbers[4 * row + 2], numbers[4 * row + 3]),
+		(Rows<V>::loaded([&](int k) __attribute__((always_inline)) {
+			 return at<row>(all, k);
+		 }).columns(numbers[4 * row], numbers[4 * row + 1], numbers[4 * row + 2], numbers[4 * row + 3]),
 		 ...);
 	}
 	template <int... row>

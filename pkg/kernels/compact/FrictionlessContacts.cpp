@@ -49,15 +49,18 @@ HEXMEMBRANE_WIDEST void FrictionlessContacts::sweepRows(int from, int to, const 
 		for (int p = start[i]; p < start[i + 1]; p += 4) {
 			Lanes3<Four> particles;
 			Four reach;
-			Rows<Four>::loaded([&](int k) __attribute__((always_inline)) { return places[other[p + k]].centre.data(); })
-			        .columns(particles.x, particles.y, particles.z, reach);
+			Rows<Four>::loaded([&](int k) __attribute__((always_inline)) {
+				return places[other[p + k]].centre.data();
+			}).columns(particles.x, particles.y, particles.z, reach);
 			reach += a.radius;
 			const Lanes3<Four> branch = particles - centre;
 			const Four square = dot(branch, branch), distance = squareRoot(square);
 			const Four share = square > reach * reach ? Four{} : load<Four>(&kn[p]) * (reach - distance) / distance;
 			const Lanes3<Four> force = share * branch;
 			sum = sum + force;
-			Rows<Four>::ofColumns(force.x, force.y, force.z, Four{}).stored([&](int k) __attribute__((always_inline)) { return forces[p + k].force.data(); });
+			Rows<Four>::ofColumns(force.x, force.y, force.z, Four{}).stored([&](int k) __attribute__((always_inline)) {
+				return forces[p + k].force.data();
+			});
 		}
 		loads[i].force -= Vec3(total(sum.x), total(sum.y), total(sum.z));
 	}

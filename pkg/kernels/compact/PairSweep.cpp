@@ -55,8 +55,7 @@ struct PairGeometry {
 		const int *const first = s.first + p, *const second = s.second + p;
 		const StoredContact<double>* const contacts = s.store->contacts.data() + p;
 		const unsigned char* const bits = s.store->bits.data() + p;
-		const auto placesOf = [&](const int* spheres) __attribute__((always_inline))
-		{
+		const auto placesOf = [&](const int* spheres) __attribute__((always_inline)) {
 			return Rows<V>::loaded([&](int k) __attribute__((always_inline)) { return s.places[spheres[k < n ? k : 0]].centre.data(); });
 		};
 		const Rows<V> one = placesOf(first), two = placesOf(second), branch = (two - one).withFourth(two + one);
@@ -115,11 +114,11 @@ struct PairGeometry {
 		const int at = width * f;
 		Passing<V>& group = batch.groups[f];
 		// velocity and the first component of the spin lie together, then the other two
-		const auto motionOf = [&](const int* spheres, int from) __attribute__((always_inline))
-		{
+		const auto motionOf = [&](const int* spheres, int from) __attribute__((always_inline)) {
 			return Rows<V>::loaded([&](int k) __attribute__((always_inline)) { return s.motions[spheres[at + k]].velocity.data() + from; });
 		};
-		const Rows<V> low1 = motionOf(batch.first, 0), low2 = motionOf(batch.second, 0), high1 = motionOf(batch.first, 4), high2 = motionOf(batch.second, 4);
+		const Rows<V> low1 = motionOf(batch.first, 0), low2 = motionOf(batch.second, 0), high1 = motionOf(batch.first, 4),
+		              high2 = motionOf(batch.second, 4);
 		Lanes3<V> velocity;
 		PairMotion<V>& motion = group.motion;
 		V unused[3];
