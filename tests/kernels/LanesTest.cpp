@@ -7,68 +7,113 @@ using namespace hexmembrane;
 
 namespace {
 
-/// Four vectors as lanes, and one of the four back.
-Lanes3 four(const std::vector<Vec3>& v)
-{
-	return {Lanes{v[0][0], v[1][0], v[2][0], v[3][0]}, Lanes{v[0][1], v[1][1], v[2][1], v[3][1]}, Lanes{v[0][2], v[1][2], v[2][2], v[3][2]}};
-}
+template <class V>
+class LanesOfAnyNumber : public testing::Test {
+public:
+	static constexpr int count = laneCount<V>;
 
-Vec3 one(const Lanes3& v, int k) { return {v.x[k], v.y[k], v.z[k]}; }
+	static V numbers(double first, double step)
+	{
+		V v{};
+		for (int k = 0; k < count; ++k) v[k] = first + k * step;
+		return v;
+	}
+	static Lanes3<V> together(const std::vector<Vec3>& v)
+	{
+		Lanes3<V> all{};
+		for (int k = 0; k < count; ++k) {
+			all.x[k] = v[k][0];
+			all.y[k] = v[k][1];
+			all.z[k] = v[k][2];
+		}
+		return all;
+	}
+	static Vec3 one(const Lanes3<V>& v, int k) { return {v.x[k], v.y[k], v.z[k]}; }
+};
+using Numbers = testing::Types<Lanes<2>, Lanes<4>, Lanes<8>>;
+TYPED_TEST_SUITE(LanesOfAnyNumber, Numbers);
+
+/// Rows of four numbers, all different.
+struct Table {
+	double rows[8][4];
+	explicit Table(double first)
+	{
+		for (int i = 0; i < 32; ++i) rows[i / 4][i % 4] = first + i;
+	}
+	template <class V>
+	Rows<V> loaded() const
+	{
+		return Rows<V>::loaded([&](int k) { return rows[k]; });
+	}
+};
 
 } // namespace
 
-TEST(Lanes, loadsAndStoresAnyFourNumbers)
+TYPED_TEST(LanesOfAnyNumber, areLoadedAndStoredFromAnywhere)
 {
-	const double numbers[6] = {1, 2, 3, 4, 5, 6};
-	double out[6] = {};
-	store4(out + 1, load4(numbers + 1)); // of no special alignment
-	for (int i = 0; i < 6; ++i) EXPECT_EQ(out[i], i >= 1 && i < 5 ? numbers[i] : 0);
-	double half[3] = {};
-	store2(half + 1, load2(numbers + 3));
-	EXPECT_EQ(half[0], 0);
-	EXPECT_EQ(half[1], 4);
-	EXPECT_EQ(half[2], 5);
-	const Lanes all = load4(numbers), again = joined(lowHalf(all), highHalf(all)), swapped = joined(highHalf(all), lowHalf(all));
-	for (int i = 0; i < 4; ++i) {
-		EXPECT_EQ(again[i], all[i]);
-		EXPECT_EQ(swapped[i], all[(i + 2) % 4]);
-		EXPECT_EQ(lanes(7.5)[i], 7.5);
+	constexpr int count = laneCount<TypeParam>;
+	double numbers[10], out[10] = {};
+	for (int i = 0; i < 10; ++i) numbers[i] = i + 1;
+	store(out + 1, load<TypeParam>(numbers + 1)); // of no special alignment
+	for (int i = 0; i < 10; ++i) EXPECT_EQ(out[i], i >= 1 && i <= count ? numbers[i] : 0);
+	for (int k = 0; k < count; ++k) EXPECT_EQ(lanes<TypeParam>(7.5)[k], 7.5);
+	EXPECT_EQ(total(load<TypeParam>(numbers)), count * (count + 1) / 2);
+}
+
+TEST(Lanes, halvesMakeAWhole)
+{
+	const Lanes<8> all{1, 2, 3, 4, 5, 6, 7, 8}, again = joined(lowHalf(all), highHalf(all));
+	const Four swapped = joined(highHalf(lowHalf(all)), lowHalf(lowHalf(all)));
+	for (int k = 0; k < 8; ++k) EXPECT_EQ(again[k], all[k]);
+	for (int k = 0; k < 4; ++k) EXPECT_EQ(swapped[k], all[(k + 2) % 4]);
+}
+
+TYPED_TEST(LanesOfAnyNumber, rowsAndColumns)
+{
+	constexpr int count = laneCount<TypeParam>;
+	const Table table(1), other(101);
+	const Rows<TypeParam> rows = table.loaded<TypeParam>(), others = other.loaded<TypeParam>();
+	TypeParam columns[4];
+	rows.columns(columns[0], columns[1], columns[2], columns[3]);
+	const auto again = Rows<TypeParam>::ofColumns(columns[0], columns[1], columns[2], columns[3]);
+	double out[8][4] = {};
+	again.stored([&](int k) { return out[k]; });
+	const Rows<TypeParam> fourth = rows.withFourth(others), firstTwo = rows.withFirstTwo(others), sum = rows + others, difference = others - rows;
+	for (int k = 0; k < 8; ++k)
+		for (int i = 0; i < 4; ++i) {
+			const double here = table.rows[k][i];
+			EXPECT_EQ(out[k][i], k < count ? here : 0);
+			if (k >= count) continue;
+			EXPECT_EQ(columns[i][k], here);
+			EXPECT_EQ(rows.row(k)[i], here);
+			EXPECT_EQ(fourth.row(k)[i], i < 3 ? here : other.rows[k][3]);
+			EXPECT_EQ(firstTwo.row(k)[i], i < 2 ? here : other.rows[k][i - 2]);
+			EXPECT_EQ(sum.row(k)[i], here + other.rows[k][i]);
+			EXPECT_EQ(difference.row(k)[i], 100);
+		}
+}
+
+TYPED_TEST(LanesOfAnyNumber, eachByItself)
+{
+	TypeParam v = TestFixture::numbers(0, 2), w = TestFixture::numbers(1, 1);
+	v[1] = 1e-300;
+	for (int k = 0; k < laneCount<TypeParam>; ++k) {
+		EXPECT_EQ(squareRoot(v)[k], std::sqrt(v[k]));
+		EXPECT_EQ(larger(v, w)[k], std::max(v[k], w[k]));
+		EXPECT_EQ(larger(w, v)[k], std::max(v[k], w[k]));
 	}
 }
 
-TEST(Lanes, transposeTurnsRowsIntoColumns)
+TYPED_TEST(LanesOfAnyNumber, vectorsAreThoseOfEigen)
 {
-	double table[4][4];
-	for (int i = 0; i < 16; ++i) table[i / 4][i % 4] = i;
-	Lanes a = load4(table[0]), b = load4(table[1]), c = load4(table[2]), d = load4(table[3]);
-	transpose(a, b, c, d);
-	const Lanes columns[4] = {a, b, c, d};
-	for (int i = 0; i < 4; ++i)
-		for (int j = 0; j < 4; ++j) EXPECT_EQ(columns[i][j], table[j][i]);
-	transpose(a, b, c, d);
-	for (int j = 0; j < 4; ++j) EXPECT_EQ(c[j], table[2][j]) << "twice is nothing";
-}
-
-TEST(Lanes, eachLaneByItself)
-{
-	const Lanes v{0, 2, 1e-300, 9}, w{1, 1, 2e-300, 16};
-	for (int i = 0; i < 4; ++i) {
-		EXPECT_EQ(squareRoot(v)[i], std::sqrt(v[i]));
-		EXPECT_EQ(larger(v, w)[i], std::max(v[i], w[i]));
-		EXPECT_EQ(larger(w, v)[i], std::max(v[i], w[i]));
-	}
-}
-
-TEST(Lanes, vectorsAreThoseOfEigen)
-{
-	const auto a = support::randomVectors(4, 1, 1), b = support::randomVectors(4, 1, 2);
-	const Lanes3 va = four(a), vb = four(b);
-	const Lanes factor{2, -3, 0.5, 0};
-	for (int k = 0; k < 4; ++k) {
-		EXPECT_EQ((one(va + vb, k) - (a[k] + b[k])).norm(), 0);
-		EXPECT_EQ((one(va - vb, k) - (a[k] - b[k])).norm(), 0);
-		EXPECT_EQ((one(factor * va, k) - factor[k] * a[k]).norm(), 0);
+	const auto a = support::randomVectors(8, 1, 1), b = support::randomVectors(8, 1, 2);
+	const Lanes3<TypeParam> va = this->together(a), vb = this->together(b);
+	const TypeParam factor = this->numbers(2, -1.5);
+	for (int k = 0; k < laneCount<TypeParam>; ++k) {
+		EXPECT_EQ((this->one(va + vb, k) - (a[k] + b[k])).norm(), 0);
+		EXPECT_EQ((this->one(va - vb, k) - (a[k] - b[k])).norm(), 0);
+		EXPECT_EQ((this->one(factor * va, k) - factor[k] * a[k]).norm(), 0);
 		EXPECT_NEAR(dot(va, vb)[k], a[k].dot(b[k]), 1e-15);
-		EXPECT_LT((one(cross(va, vb), k) - a[k].cross(b[k])).norm(), 1e-15);
+		EXPECT_LT((this->one(cross(va, vb), k) - a[k].cross(b[k])).norm(), 1e-15);
 	}
 }

@@ -5,6 +5,7 @@
 #include "kernels/base/Random.hpp"
 
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 using namespace hexmembrane;
@@ -55,28 +56,34 @@ ContactStore stored(const std::vector<Case>& cases)
 	return store;
 }
 
-void setLane(Lanes3& to, int k, const Vec3& v)
+template <class V>
+void setLane(Lanes3<V>& to, int k, const Vec3& v)
 {
 	to.x[k] = v[0];
 	to.y[k] = v[1];
 	to.z[k] = v[2];
 }
 
-Vec3 lane(const Lanes3& v, int k) { return {v.x[k], v.y[k], v.z[k]}; }
-
-FourPassing passing(const std::vector<Case>& all, int at)
+template <class V>
+Vec3 lane(const Lanes3<V>& v, int k)
 {
-	FourPassing four{};
-	for (int k = 0; k < 4; ++k) {
+	return {v.x[k], v.y[k], v.z[k]};
+}
+
+template <class V>
+Passing<V> passing(const std::vector<Case>& all, int at)
+{
+	Passing<V> group{};
+	for (int k = 0; k < laneCount<V>; ++k) {
 		const Meeting& meeting = all[at + k].meeting;
 		const PairMotion<double> motion = meeting.motion();
-		setLane(four.normal, k, meeting.normal);
-		four.overlap[k] = meeting.overlap;
-		setLane(four.motion.velocity, k, motion.velocity);
-		setLane(four.motion.spinSum, k, motion.spinSum);
-		setLane(four.motion.spinDifference, k, motion.spinDifference);
+		setLane(group.normal, k, meeting.normal);
+		group.overlap[k] = meeting.overlap;
+		setLane(group.motion.velocity, k, motion.velocity);
+		setLane(group.motion.spinSum, k, motion.spinSum);
+		setLane(group.motion.spinDifference, k, motion.spinDifference);
 	}
-	return four;
+	return group;
 }
 
 /// The law in plain words, branch by branch: nothing of ContactLaw.hpp's steps.
@@ -119,27 +126,35 @@ Expected plainly(const Case& one)
 
 } // namespace
 
-TEST(Sweep, oneContactAndFourDoWhatTheLawSays)
+/// Of as many lanes as any set has.
+template <class V>
+class SweepOf : public testing::Test {};
+using Widths = testing::Types<Lanes<2>, Lanes<4>, Lanes<8>>;
+TYPED_TEST_SUITE(SweepOf, Widths);
+
+TYPED_TEST(SweepOf, oneContactAndAGroupDoWhatTheLawSays)
 {
+	constexpr int width = laneCount<TypeParam>;
 	std::vector<Case> all = cases(4000);
 	ContactStore store = stored(all);
 	int opened = 0, slid = 0, rolled = 0, lost = 0;
-	for (int at = 0; at < int(all.size()); at += 4) {
-		const int index[4] = {at, at + 1, at + 2, at + 3};
-		FourPassing four = passing(all, at);
-		FourWorks works;
-		advanceFour(store, index, four, dt, works);
-		for (int k = 0; k < 4; ++k) {
+	for (int at = 0; at < int(all.size()); at += width) {
+		int index[width];
+		std::iota(index, index + width, at);
+		Passing<TypeParam> group = passing<TypeParam>(all, at);
+		LaneWorks<TypeParam> works;
+		advanceGroup<TypeParam>(store, index, group, dt, works);
+		for (int k = 0; k < width; ++k) {
 			Case& one = all[at + k];
 			const Expected expected = plainly(one);
 			const bool held = one.contact.memory.shear.norm() > 0;
 			const ContactStep step = advanceContact(one.contact, one.meeting, dt);
 			const Contact got = store.get(at + k);
 			EXPECT_NEAR(step.normal, expected.normal, 1e-15);
-			EXPECT_NEAR(four.normalForce[k], expected.normal, 1e-15);
-			for (const Vec3& shear : {one.contact.memory.shear, got.memory.shear, lane(four.shear, k)})
+			EXPECT_NEAR(group.normalForce[k], expected.normal, 1e-15);
+			for (const Vec3& shear : {one.contact.memory.shear, got.memory.shear, lane(group.shear, k)})
 				EXPECT_LT((shear - expected.shear).norm(), 1e-12) << at + k;
-			for (const Vec3& moment : {one.contact.memory.moment, got.memory.moment, lane(four.moment, k)})
+			for (const Vec3& moment : {one.contact.memory.moment, got.memory.moment, lane(group.moment, k)})
 				EXPECT_LT((moment - expected.moment).norm(), 1e-15) << at + k;
 			for (const double slip : {step.works.slip, works.slip[k]}) EXPECT_NEAR(slip, expected.slip, 1e-12 * std::abs(expected.slip) + 1e-20);
 			for (const double roll : {step.works.roll, works.roll[k]}) EXPECT_NEAR(roll, expected.roll, 1e-12 * std::abs(expected.roll) + 1e-20);
@@ -186,19 +201,21 @@ TEST(ContactStore, givesBackWhatItGot)
 	}
 }
 
-TEST(Sweep, aNaNStays)
+TYPED_TEST(SweepOf, aNaNStays)
 {
-	std::vector<Case> all = cases(4);
+	constexpr int width = laneCount<TypeParam>;
+	std::vector<Case> all = cases(width);
 	for (Case& one : all) {
 		one.springs.ks = 3e4;
 		one.contact.bits = contactTouching;
 		one.meeting = {Vec3::UnitX(), 1e-6, {Vec3::Zero(), Vec3::Zero()}, {Vec3::Zero(), Vec3::Zero()}, Vec3::Zero(), Vec3::Zero()};
 	}
-	all[2].meeting.body2.velocity[1] = std::nan("");
+	all[1].meeting.body2.velocity[1] = std::nan("");
 	ContactStore store = stored(all);
-	const int index[4] = {0, 1, 2, 3};
-	FourPassing four = passing(all, 0);
-	FourWorks works;
-	advanceFour(store, index, four, dt, works);
-	for (int k = 0; k < 4; ++k) EXPECT_EQ(std::isnan(store.get(k).memory.shear.sum()), k == 2);
+	int index[width];
+	std::iota(index, index + width, 0);
+	Passing<TypeParam> group = passing<TypeParam>(all, 0);
+	LaneWorks<TypeParam> works;
+	advanceGroup<TypeParam>(store, index, group, dt, works);
+	for (int k = 0; k < width; ++k) EXPECT_EQ(std::isnan(store.get(k).memory.shear.sum()), k == 1);
 }

@@ -8,28 +8,30 @@ namespace hexmembrane {
 namespace {
 
 /// A boundary and the spheres near it as what meets; the boundary is body 1.
+template <class V>
 struct BoundaryGeometry {
+	static constexpr int width = laneCount<V>;
 	const BoundarySweep& s;
 	BoundaryLoad& received;
 	const Motion own;
 
 	struct Batch {
 		int count = 0;
-		int contact[sweepStretch + 4];
-		Vec3 arm1[sweepStretch + 4], arm2[sweepStretch + 4]; ///< from the centres to the contact point
+		int contact[sweepStretch + width];
+		Vec3 arm1[sweepStretch + width], arm2[sweepStretch + width]; ///< from the centres to the contact point
 		// four numbers each, read as rows
-		alignas(32) double normal[sweepStretch + 4][4]; ///< and the overlap
-		alignas(32) double velocity[sweepStretch + 4][4];
-		alignas(32) double spinSum[sweepStretch + 4][4];
-		alignas(32) double spinDifference[sweepStretch + 4][4];
-		FourPassing fours[sweepStretch / 4 + 1];
+		alignas(32) double normal[sweepStretch + width][4]; ///< and the overlap
+		alignas(32) double velocity[sweepStretch + width][4];
+		alignas(32) double spinSum[sweepStretch + width][4];
+		alignas(32) double spinDifference[sweepStretch + width][4];
+		Passing<V> groups[sweepStretch / width + 1];
 
 		HEXMEMBRANE_INLINE void move(int from, int to)
 		{
 			contact[to] = contact[from];
 			arm1[to] = arm1[from];
 			arm2[to] = arm2[from];
-			for (auto* rows : {normal, velocity, spinSum, spinDifference}) store4(rows[to], load4(rows[from]));
+			for (auto* rows : {normal, velocity, spinSum, spinDifference}) store(rows[to], load<Four>(rows[from]));
 		}
 	};
 
@@ -79,40 +81,42 @@ struct BoundaryGeometry {
 		return any & contactBonded;
 	}
 
-	HEXMEMBRANE_INLINE static Lanes3 columns(const double (*rows)[4], Lanes& fourth)
+	HEXMEMBRANE_INLINE static Lanes3<V> columns(const double (*rows)[4], V& fourth)
 	{
-		Lanes3 v{load4(rows[0]), load4(rows[1]), load4(rows[2])};
-		fourth = load4(rows[3]);
-		transpose(v.x, v.y, v.z, fourth);
+		Lanes3<V> v;
+		Rows<V>::loaded([&](int k) __attribute__((always_inline)) { return rows[k]; }).columns(v.x, v.y, v.z, fourth);
 		return v;
 	}
-	HEXMEMBRANE_INLINE void measure(Batch& batch, int f) const { batch.fours[f].normal = columns(batch.normal + 4 * f, batch.fours[f].overlap); }
+	HEXMEMBRANE_INLINE void measure(Batch& batch, int f) const { batch.groups[f].normal = columns(batch.normal + width * f, batch.groups[f].overlap); }
 	HEXMEMBRANE_INLINE void follow(Batch& batch, int f) const
 	{
-		Lanes unused;
-		PairMotion<Lanes>& motion = batch.fours[f].motion;
-		motion.velocity = columns(batch.velocity + 4 * f, unused);
-		motion.spinSum = columns(batch.spinSum + 4 * f, unused);
-		motion.spinDifference = columns(batch.spinDifference + 4 * f, unused);
+		V unused;
+		PairMotion<V>& motion = batch.groups[f].motion;
+		motion.velocity = columns(batch.velocity + width * f, unused);
+		motion.spinSum = columns(batch.spinSum + width * f, unused);
+		motion.spinDifference = columns(batch.spinDifference + width * f, unused);
 	}
 	HEXMEMBRANE_INLINE void act(const Batch& batch, int f) const
 	{
-		const FourPassing& four = batch.fours[f];
-		const Lanes3 force = four.normalForce * four.normal + four.shear;
-		for (int k = 0; k < 4; ++k) {
-			const int c = batch.contact[4 * f + k];
+		const Passing<V>& group = batch.groups[f];
+		const Lanes3<V> force = group.normalForce * group.normal + group.shear;
+		for (int k = 0; k < width; ++k) {
+			const int n = width * f + k, c = batch.contact[n];
 			if (!s.store->bits[c]) continue; // has opened
-			act(c, batch.arm1[4 * f + k], batch.arm2[4 * f + k], {force.x[k], force.y[k], force.z[k]},
-			    {four.moment.x[k], four.moment.y[k], four.moment.z[k]}, four.normalForce[k]);
+			act(c, batch.arm1[n], batch.arm2[n], {force.x[k], force.y[k], force.z[k]}, {group.moment.x[k], group.moment.y[k], group.moment.z[k]},
+			    group.normalForce[k]);
 		}
 	}
 };
 
-HEXMEMBRANE_WIDEST void sweepWidest(const BoundarySweep& sweep, BoundaryLoad& received)
+template <class V>
+HEXMEMBRANE_INLINE void sweepBy(const BoundarySweep& sweep, BoundaryLoad& received)
 {
-	BoundaryGeometry geometry{sweep, received, {sweep.boundary.velocity, sweep.boundary.spin}};
-	sweepContacts(geometry, *sweep.store, sweep.begin, sweep.end, sweep.dt, received.sums);
+	BoundaryGeometry<V> geometry{sweep, received, {sweep.boundary.velocity, sweep.boundary.spin}};
+	sweepContacts<V>(geometry, *sweep.store, sweep.begin, sweep.end, sweep.dt, received.sums);
 }
+
+HEXMEMBRANE_WIDEST_LANES(void sweepWidest(const BoundarySweep& sweep, BoundaryLoad& received), sweepBy<Lanes<width>>(sweep, received))
 
 } // namespace
 

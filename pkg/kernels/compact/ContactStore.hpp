@@ -9,7 +9,7 @@
 
 namespace hexmembrane {
 
-/// A contact as it is stored, one and a half cache lines, or four of them as lanes: a sweep over many contacts waits for memory, so what can be had otherwise
+/// A contact as it is stored, one and a half cache lines, or several of them as lanes: a sweep over many contacts waits for memory, so what can be had otherwise
 /// (the parameters of its kind) is not in it. The alignment fills it up to whole rows of four numbers.
 template <class V>
 struct alignas(4 * sizeof(V)) StoredContact {
@@ -17,7 +17,7 @@ struct alignas(4 * sizeof(V)) StoredContact {
 	PairSprings<V> springs;
 };
 constexpr int rowsOfContact = sizeof(StoredContact<double>) / (4 * sizeof(double));
-static_assert(sizeof(StoredContact<Lanes>) == 4 * rowsOfContact * sizeof(Lanes), "four contacts are read as lanes in the same order");
+static_assert(sizeof(StoredContact<Four>) == 4 * rowsOfContact * sizeof(Four), "four contacts are read as lanes in the same order");
 
 /// Springs of a pair, and the kind of pair that it is: an index into a table of kinds.
 struct SpringsOfKind {
@@ -51,30 +51,31 @@ private:
 	std::vector<BondStrengths> strengths; ///< of bonds; empty: there has been no bond
 };
 
-/// Where four contacts of a store stand. Their records become lanes, and back, row by row and number by number, straight into the members: a copy of the whole
-/// through memory would wait for its own stores.
-struct FourContacts {
+/// Where as many contacts of a store stand as V has lanes. Their records become lanes, and back, row by row and number by number, straight into the members: a
+/// copy of the whole through memory would wait for its own stores.
+template <class V>
+struct ContactsAt {
 	const int* index;
 
-	HEXMEMBRANE_INLINE StoredContact<Lanes> contacts(const ContactStore& store) const
+	HEXMEMBRANE_INLINE StoredContact<V> contacts(const ContactStore& store) const
 	{
-		StoredContact<Lanes> four;
-		load(store.contacts.data(), reinterpret_cast<Lanes*>(&four), std::make_integer_sequence<int, rowsOfContact>());
-		return four;
+		StoredContact<V> several;
+		load(store.contacts.data(), reinterpret_cast<V*>(&several), std::make_integer_sequence<int, rowsOfContact>());
+		return several;
 	}
-	HEXMEMBRANE_INLINE void put(const StoredContact<Lanes>& four, ContactStore& store) const
+	HEXMEMBRANE_INLINE void put(const StoredContact<V>& several, ContactStore& store) const
 	{
-		save(reinterpret_cast<const Lanes*>(&four), store.contacts.data(), std::make_integer_sequence<int, rowsOfContact>());
+		save(reinterpret_cast<const V*>(&several), store.contacts.data(), std::make_integer_sequence<int, rowsOfContact>());
 	}
-	HEXMEMBRANE_INLINE PairKind<Lanes> kinds(const ContactStore& store) const
+	HEXMEMBRANE_INLINE PairKind<V> kinds(const ContactStore& store) const
 	{
-		PairKind<Lanes> four;
-		gather(store, reinterpret_cast<Lanes*>(&four), std::make_integer_sequence<int, int(sizeof(four) / sizeof(Lanes))>());
-		return four;
+		PairKind<V> several;
+		gather(store, reinterpret_cast<V*>(&several), std::make_integer_sequence<int, int(sizeof(several) / sizeof(V))>());
+		return several;
 	}
 
 private:
-	static_assert(sizeof(PairKind<Lanes>) == 4 * sizeof(PairKind<double>), "a kind is its numbers");
+	static_assert(sizeof(PairKind<V>) == laneCount<V> * sizeof(PairKind<double>), "a kind is its numbers");
 
 	template <int row>
 	HEXMEMBRANE_INLINE double* at(const StoredContact<double>* all, int k) const
@@ -82,41 +83,29 @@ private:
 		return const_cast<double*>(reinterpret_cast<const double*>(all + index[k])) + 4 * row;
 	}
 	template <int... row>
-	HEXMEMBRANE_INLINE void load(const StoredContact<double>* all, Lanes* lanes, std::integer_sequence<int, row...>) const
+	HEXMEMBRANE_INLINE void load(const StoredContact<double>* all, V* numbers, std::integer_sequence<int, row...>) const
 	{
-		(loadRow(load4(at<row>(all, 0)), load4(at<row>(all, 1)), load4(at<row>(all, 2)), load4(at<row>(all, 3)), lanes + 4 * row), ...);
-	}
-	static HEXMEMBRANE_INLINE void loadRow(Lanes a, Lanes b, Lanes c, Lanes d, Lanes* lanes)
-	{
-		transpose(a, b, c, d);
-		lanes[0] = a;
-		lanes[1] = b;
-		lanes[2] = c;
-		lanes[3] = d;
-	}
-	template <int... row>
-	HEXMEMBRANE_INLINE void save(const Lanes* lanes, StoredContact<double>* all, std::integer_sequence<int, row...>) const
-	{
-		(saveRow(lanes[4 * row], lanes[4 * row + 1], lanes[4 * row + 2], lanes[4 * row + 3], at<row>(all, 0), at<row>(all, 1), at<row>(all, 2),
-		         at<row>(all, 3)),
+		(Rows<V>::loaded([&](int k) __attribute__((always_inline)) {
+			 return at<row>(all, k);
+		 }).columns(numbers[4 * row], numbers[4 * row + 1], numbers[4 * row + 2], numbers[4 * row + 3]),
 		 ...);
 	}
-	static HEXMEMBRANE_INLINE void saveRow(Lanes a, Lanes b, Lanes c, Lanes d, double* toA, double* toB, double* toC, double* toD)
+	template <int... row>
+	HEXMEMBRANE_INLINE void save(const V* numbers, StoredContact<double>* all, std::integer_sequence<int, row...>) const
 	{
-		transpose(a, b, c, d);
-		store4(toA, a);
-		store4(toB, b);
-		store4(toC, c);
-		store4(toD, d);
+		(Rows<V>::ofColumns(numbers[4 * row], numbers[4 * row + 1], numbers[4 * row + 2], numbers[4 * row + 3])
+		         .stored([&](int k) __attribute__((always_inline)) { return at<row>(all, k); }),
+		 ...);
 	}
 	template <int... number>
-	HEXMEMBRANE_INLINE void gather(const ContactStore& store, Lanes* lanes, std::integer_sequence<int, number...>) const
+	HEXMEMBRANE_INLINE void gather(const ContactStore& store, V* numbers, std::integer_sequence<int, number...>) const
 	{
 		const PairKind<double>* const table = store.table.data();
 		const std::uint16_t* const kinds = store.kinds.data();
-		const auto *a = reinterpret_cast<const double*>(table + kinds[index[0]]), *b = reinterpret_cast<const double*>(table + kinds[index[1]]),
-		           *c = reinterpret_cast<const double*>(table + kinds[index[2]]), *d = reinterpret_cast<const double*>(table + kinds[index[3]]);
-		((lanes[number] = Lanes{a[number], b[number], c[number], d[number]}), ...);
+		for (int k = 0; k < laneCount<V>; ++k) {
+			const auto* kind = reinterpret_cast<const double*>(table + kinds[index[k]]);
+			((numbers[number][k] = kind[number]), ...);
+		}
 	}
 };
 

@@ -44,27 +44,24 @@ HEXMEMBRANE_WIDEST void FrictionlessContacts::sweepRows(int from, int to, const 
 	for (int i = from; i < to; ++i) {
 		if (start[i] == start[i + 1]) continue;
 		const Place& a = places[i];
-		const Lanes3 centre{lanes(a.centre[0]), lanes(a.centre[1]), lanes(a.centre[2])};
-		Lanes3 sum{lanes(0), lanes(0), lanes(0)};
+		const Lanes3<Four> centre{lanes<Four>(a.centre[0]), lanes<Four>(a.centre[1]), lanes<Four>(a.centre[2])};
+		Lanes3<Four> sum{};
 		for (int p = start[i]; p < start[i + 1]; p += 4) {
-			const auto particle = [&](int k) __attribute__((always_inline)) { return load4(places[other[p + k]].centre.data()); };
-			Lanes3 particles{particle(0), particle(1), particle(2)};
-			Lanes reach = particle(3);
-			transpose(particles.x, particles.y, particles.z, reach);
+			Lanes3<Four> particles;
+			Four reach;
+			Rows<Four>::loaded([&](int k) __attribute__((always_inline)) {
+				return places[other[p + k]].centre.data();
+			}).columns(particles.x, particles.y, particles.z, reach);
 			reach += a.radius;
-			const Lanes3 branch = particles - centre;
-			const Lanes square = dot(branch, branch), distance = squareRoot(square);
-			const Lanes share = square > reach * reach ? lanes(0) : load4(&kn[p]) * (reach - distance) / distance;
-			Lanes3 force = share * branch;
+			const Lanes3<Four> branch = particles - centre;
+			const Four square = dot(branch, branch), distance = squareRoot(square);
+			const Four share = square > reach * reach ? Four{} : load<Four>(&kn[p]) * (reach - distance) / distance;
+			const Lanes3<Four> force = share * branch;
 			sum = sum + force;
-			Lanes unused = lanes(0);
-			transpose(force.x, force.y, force.z, unused);
-			store4(forces[p].force.data(), force.x);
-			store4(forces[p + 1].force.data(), force.y);
-			store4(forces[p + 2].force.data(), force.z);
-			store4(forces[p + 3].force.data(), unused);
+			Rows<Four>::ofColumns(force.x, force.y, force.z, Four{}).stored([&](int k) __attribute__((always_inline)) {
+				return forces[p + k].force.data();
+			});
 		}
-		const auto total = [](Lanes v) __attribute__((always_inline)) { return (v[0] + v[1]) + (v[2] + v[3]); };
 		loads[i].force -= Vec3(total(sum.x), total(sum.y), total(sum.z));
 	}
 }
@@ -79,9 +76,9 @@ HEXMEMBRANE_WIDEST void FrictionlessContacts::gatherRows(int from, int to, Padde
 	const int* const at = place.data();
 	const PaddedForce* const pushes = forces.data();
 	for (int m = from; m < to; ++m) {
-		Lanes sum = lanes(0);
-		for (int q = particleStart[m]; q < particleStart[m + 1]; ++q) sum += load4(pushes[at[q]].force.data());
-		store4(onParticle[m].force.data(), sum);
+		Four sum{};
+		for (int q = particleStart[m]; q < particleStart[m + 1]; ++q) sum += load<Four>(pushes[at[q]].force.data());
+		store(onParticle[m].force.data(), sum);
 	}
 }
 

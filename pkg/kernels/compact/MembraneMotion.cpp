@@ -42,11 +42,11 @@ HEXMEMBRANE_WIDEST void toRows(int n, const double* records, double* x, double* 
 	int i = 0;
 	for (; i + 4 <= n; i += 4) {
 		const double* from = records + 4 * i;
-		Lanes a = load4(from), b = load4(from + 4), c = load4(from + 8), d = load4(from + 12);
-		transpose(a, b, c, d);
-		store4(x + i, a);
-		store4(y + i, b);
-		store4(z + i, c);
+		Four a, b, c, d;
+		Rows<Four>::loaded([&](int k) __attribute__((always_inline)) { return from + 4 * k; }).columns(a, b, c, d);
+		store(x + i, a);
+		store(y + i, b);
+		store(z + i, c);
 	}
 	for (; i < n; ++i) {
 		x[i] = records[4 * i];
@@ -60,12 +60,8 @@ HEXMEMBRANE_WIDEST void fromRows(int n, const double* x, const double* y, const 
 	int i = 0;
 	for (; i + 4 <= n; i += 4) {
 		double* to = records + 4 * i;
-		Lanes a = load4(x + i), b = load4(y + i), c = load4(z + i), d{to[3], to[7], to[11], to[15]};
-		transpose(a, b, c, d);
-		store4(to, a);
-		store4(to + 4, b);
-		store4(to + 8, c);
-		store4(to + 12, d);
+		Rows<Four>::ofColumns(load<Four>(x + i), load<Four>(y + i), load<Four>(z + i), Four{to[3], to[7], to[11], to[15]})
+		        .stored([&](int k) __attribute__((always_inline)) { return to + 4 * k; });
 	}
 	for (; i < n; ++i) {
 		records[4 * i] = x[i];

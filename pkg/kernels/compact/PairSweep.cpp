@@ -8,22 +8,24 @@ namespace hexmembrane {
 namespace {
 
 /// Pairs of spheres as what meets.
+template <class V>
 struct PairGeometry {
+	static constexpr int width = laneCount<V>;
 	const PairSweep& s;
 
 	struct Batch {
 		int count = 0;
-		int contact[sweepStretch + 4], first[sweepStretch + 4], second[sweepStretch + 4];
-		alignas(32) double branch[sweepStretch + 4][4]; ///< from centre to centre, and the sum of the radii
-		FourPassing fours[sweepStretch / 4 + 1];
-		Lanes arm1[sweepStretch / 4 + 1], arm2[sweepStretch / 4 + 1]; ///< from the centres to the contact point
+		int contact[sweepStretch + width], first[sweepStretch + width], second[sweepStretch + width];
+		alignas(32) double branch[sweepStretch + width][4]; ///< from centre to centre, and the sum of the radii
+		Passing<V> groups[sweepStretch / width + 1];
+		V arm1[sweepStretch / width + 1], arm2[sweepStretch / width + 1]; ///< from the centres to the contact point
 
 		HEXMEMBRANE_INLINE void move(int from, int to)
 		{
 			contact[to] = contact[from];
 			first[to] = first[from];
 			second[to] = second[from];
-			store4(branch[to], load4(branch[from]));
+			store(branch[to], load<Four>(branch[from]));
 		}
 	};
 
@@ -47,102 +49,115 @@ struct PairGeometry {
 		loadOf(s.second[p]) += {force, m.arm2.cross(contact.memory.shear) + moment};
 	}
 
-	HEXMEMBRANE_INLINE bool pick(int p, int end, Batch& batch) const
+	/// Of the pairs p .. p + n - 1, n at most the width. \return the bits of all of them
+	HEXMEMBRANE_INLINE unsigned char pickGroup(int p, int n, Batch& batch) const
 	{
-		const int *const first = s.first, *const second = s.second;
-		const unsigned char* const bits = s.store->bits.data();
-		const Place* const places = s.places;
-		int count = batch.count;
+		const int *const first = s.first + p, *const second = s.second + p;
+		const StoredContact<double>* const contacts = s.store->contacts.data() + p;
+		const unsigned char* const bits = s.store->bits.data() + p;
+		const auto placesOf = [&](const int* spheres) __attribute__((always_inline)) {
+			return Rows<V>::loaded([&](int k) __attribute__((always_inline)) { return s.places[spheres[k < n ? k : 0]].centre.data(); });
+		};
+		const Rows<V> one = placesOf(first), two = placesOf(second), branch = (two - one).withFourth(two + one);
+		Lanes3<V> between;
+		V reach;
+		branch.columns(between.x, between.y, between.z, reach);
+		const LaneMask<V> near = dot(between, between) > reach * reach ? LaneMask<V>{} : LaneMask<V>{} + 1;
 		unsigned char any = 0;
-		for (; p < end; ++p) {
-			const int i = first[p], j = second[p];
-			// what later passes need of the second sphere; the first one was there for the pair before
-			__builtin_prefetch(s.motions + j);
-			__builtin_prefetch(&loadOf(j), 1);
-			const Lanes a = load4(places[i].centre.data()), b = load4(places[j].centre.data());
-			const Lanes branch = __builtin_shufflevector(b - a, b + a, 0, 1, 2, 7);
-			store4(batch.branch[count], branch);
-			batch.contact[count] = p;
-			batch.first[count] = i;
-			batch.second[count] = j;
-			const double square = branch[0] * branch[0] + branch[1] * branch[1] + branch[2] * branch[2];
-			count += (!(square > branch[3] * branch[3]) & (bits[p] < contactBonded)) | (bits[p] == contactTouching);
-			any |= bits[p];
+		int count = batch.count;
+#pragma GCC unroll 8
+		for (int k = 0; k < width; ++k) {
+			if (k >= n) break;
+			// what later passes need of the second sphere and of the contact; the first sphere was there for the pair before
+			__builtin_prefetch(s.motions + second[k]);
+			__builtin_prefetch(s.loads + second[k], 1);
+			__builtin_prefetch(contacts + k, 1);
+			__builtin_prefetch(&contacts[k].springs, 1);
+			store(batch.branch[count], branch.row(k));
+			batch.contact[count] = p + k;
+			batch.first[count] = first[k];
+			batch.second[count] = second[k];
+			// those that touch, or did, and have no bond
+			count += (int(near[k]) | bits[k]) & ~(bits[k] / contactBonded) & 1;
+			any |= bits[k];
 		}
 		batch.count = count;
-		return any & contactBonded;
+		return any;
 	}
 
-	HEXMEMBRANE_INLINE Lanes radii(const int* index) const
+	HEXMEMBRANE_INLINE bool pick(int p, int end, Batch& batch) const
 	{
-		return Lanes{s.places[index[0]].radius, s.places[index[1]].radius, s.places[index[2]].radius, s.places[index[3]].radius};
+		unsigned char any = 0;
+		for (; p + width <= end; p += width) any |= pickGroup(p, width, batch);
+		if (p < end) any |= pickGroup(p, end - p, batch);
+		return any & contactBonded;
 	}
 
 	HEXMEMBRANE_INLINE void measure(Batch& batch, int f) const
 	{
-		const int at = 4 * f;
-		FourPassing& four = batch.fours[f];
-		Lanes3 branch{load4(batch.branch[at]), load4(batch.branch[at + 1]), load4(batch.branch[at + 2])};
-		Lanes reach = load4(batch.branch[at + 3]);
-		transpose(branch.x, branch.y, branch.z, reach);
-		const Lanes distance = squareRoot(dot(branch, branch));
-		four.normal = (1 / distance) * branch;
-		four.overlap = reach - distance;
-		batch.arm1[f] = radii(batch.first + at) - 0.5 * four.overlap;
-		batch.arm2[f] = radii(batch.second + at) - 0.5 * four.overlap;
+		const int at = width * f;
+		Passing<V>& group = batch.groups[f];
+		Lanes3<V> branch;
+		V reach;
+		Rows<V>::loaded([&](int k) __attribute__((always_inline)) { return batch.branch[at + k]; }).columns(branch.x, branch.y, branch.z, reach);
+		const V distance = squareRoot(dot(branch, branch));
+		group.normal = (1 / distance) * branch;
+		group.overlap = reach - distance;
+		V radius{};
+		for (int k = 0; k < width; ++k) radius[k] = s.places[batch.first[at + k]].radius;
+		batch.arm1[f] = radius - 0.5 * group.overlap;
+		batch.arm2[f] = (reach - radius) - 0.5 * group.overlap;
 	}
 
 	HEXMEMBRANE_INLINE void follow(Batch& batch, int f) const
 	{
-		const int at = 4 * f;
-		FourPassing& four = batch.fours[f];
+		const int at = width * f;
+		Passing<V>& group = batch.groups[f];
 		// velocity and the first component of the spin lie together, then the other two
-		Lanes low[4], high[4], firstSpin[4];
-		for (int k = 0; k < 4; ++k) {
-			const double *one = s.motions[batch.first[at + k]].velocity.data(), *two = s.motions[batch.second[at + k]].velocity.data();
-			const HalfLanes spin1 = load2(one + 4), spin2 = load2(two + 4);
-			const Lanes low1 = load4(one), low2 = load4(two);
-			low[k] = low2 - low1;
-			firstSpin[k] = low1 + low2;
-			high[k] = joined(spin2 - spin1, spin2 + spin1);
-		}
-		transpose(low[0], low[1], low[2], low[3]);
-		transpose(firstSpin[0], firstSpin[1], firstSpin[2], firstSpin[3]);
-		transpose(high[0], high[1], high[2], high[3]);
-		four.motion.spinDifference = {low[3], high[0], high[1]};
-		four.motion.spinSum = {firstSpin[3], high[2], high[3]};
+		const auto motionOf = [&](const int* spheres, int from) __attribute__((always_inline)) {
+			return Rows<V>::loaded([&](int k) __attribute__((always_inline)) { return s.motions[spheres[at + k]].velocity.data() + from; });
+		};
+		const Rows<V> low1 = motionOf(batch.first, 0), low2 = motionOf(batch.second, 0), high1 = motionOf(batch.first, 4),
+		              high2 = motionOf(batch.second, 4);
+		Lanes3<V> velocity;
+		PairMotion<V>& motion = group.motion;
+		V unused[3];
+		(low2 - low1).columns(velocity.x, velocity.y, velocity.z, motion.spinDifference.x);
+		(low1 + low2).columns(unused[0], unused[1], unused[2], motion.spinSum.x);
+		(high2 - high1).withFirstTwo(high2 + high1).columns(motion.spinDifference.y, motion.spinDifference.z, motion.spinSum.y, motion.spinSum.z);
 		// arm1 spin1 + arm2 spin2
-		const Lanes3 turning =
-		        (0.5 * (batch.arm1[f] + batch.arm2[f])) * four.motion.spinSum + (0.5 * (batch.arm2[f] - batch.arm1[f])) * four.motion.spinDifference;
-		four.motion.velocity = Lanes3{low[0], low[1], low[2]} - cross(turning, four.normal);
+		const Lanes3<V> turning =
+		        (0.5 * (batch.arm1[f] + batch.arm2[f])) * motion.spinSum + (0.5 * (batch.arm2[f] - batch.arm1[f])) * motion.spinDifference;
+		motion.velocity = velocity - cross(turning, group.normal);
 	}
 
 	HEXMEMBRANE_INLINE void act(const Batch& batch, int f) const
 	{
-		const int at = 4 * f;
-		const FourPassing& four = batch.fours[f];
-		const Lanes3 force = four.normalForce * four.normal + four.shear, turning = cross(four.normal, four.shear);
-		const Lanes3 torque1 = batch.arm1[f] * turning + four.moment, torque2 = four.moment - batch.arm2[f] * turning;
-		Lanes low1[4] = {force.x, force.y, force.z, torque1.x}, low2[4] = {force.x, force.y, force.z, torque2.x};
-		Lanes both[4] = {torque1.y, torque1.z, torque2.y, torque2.z};
-		transpose(low1[0], low1[1], low1[2], low1[3]);
-		transpose(low2[0], low2[1], low2[2], low2[3]);
-		transpose(both[0], both[1], both[2], both[3]);
-		for (int k = 0; k < 4; ++k) {
+		const int at = width * f;
+		const Passing<V>& group = batch.groups[f];
+		const Lanes3<V> force = group.normalForce * group.normal + group.shear, turning = cross(group.normal, group.shear);
+		const Lanes3<V> torque1 = batch.arm1[f] * turning + group.moment, torque2 = group.moment - batch.arm2[f] * turning;
+		const auto low1 = Rows<V>::ofColumns(force.x, force.y, force.z, torque1.x), low2 = Rows<V>::ofColumns(force.x, force.y, force.z, torque2.x);
+		const auto both = Rows<V>::ofColumns(torque1.y, torque1.z, torque2.y, torque2.z);
+#pragma GCC unroll 8
+		for (int k = 0; k < width; ++k) {
 			double *one = s.loads[batch.first[at + k]].force.data(), *two = loadOf(batch.second[at + k]).force.data();
-			store4(one, load4(one) - low1[k]);
-			store2(one + 4, load2(one + 4) - lowHalf(both[k]));
-			store4(two, load4(two) + low2[k]);
-			store2(two + 4, load2(two + 4) + highHalf(both[k]));
+			store(one, load<Four>(one) - low1.row(k));
+			store(one + 4, load<Two>(one + 4) - lowHalf(both.row(k)));
+			store(two, load<Four>(two) + low2.row(k));
+			store(two + 4, load<Two>(two + 4) + highHalf(both.row(k)));
 		}
 	}
 };
 
-HEXMEMBRANE_WIDEST void sweepWidest(const PairSweep& sweep, SweepSums& sums)
+template <class V>
+HEXMEMBRANE_INLINE void sweepBy(const PairSweep& sweep, SweepSums& sums)
 {
-	PairGeometry geometry{sweep};
-	sweepContacts(geometry, *sweep.store, sweep.begin, sweep.end, sweep.dt, sums);
+	PairGeometry<V> geometry{sweep};
+	sweepContacts<V>(geometry, *sweep.store, sweep.begin, sweep.end, sweep.dt, sums);
 }
+
+HEXMEMBRANE_WIDEST_LANES(void sweepWidest(const PairSweep& sweep, SweepSums& sums), sweepBy<Lanes<width>>(sweep, sums))
 
 } // namespace
 

@@ -19,7 +19,7 @@ struct PairSweep {
 };
 
 /// One step of the pairs begin .. end - 1. Those that touch are picked out first, without branches that the processor would have to guess, and then
-/// taken four at a time; a few at the end of a run, and bonds, one at a time.
+/// taken by as many as a register has lanes; a few at the end of a run, and bonds, one at a time.
 SweepSums sweepPairs(const PairSweep& sweep);
 
 } // namespace hexmembrane

@@ -8,7 +8,7 @@
 #include <type_traits>
 
 /* Linear contact laws of PFC (Itasca, PFC documentation, contact models "linear", "rrlinear", "linearcbond"), one step at a time. What
- * has a parameter V is written once for one contact (V = double) and for four (V = Lanes): YADE's law, the sweeps of the compact tier and the packer use it.
+ * has a parameter V is written once for one contact (V = double) and for several (V = Lanes): YADE's law, the sweeps of the compact tier and the packer use it.
  *
  * Signs: the unit normal n points from body 1 to body 2; overlap u > 0 in contact, < 0 across a gap; displacement, rotation and velocity are those of body 2
  * relative to body 1; normal force N (> 0 in compression), shear force and moment act on body 2, their opposites on body 1. SI units.
