@@ -31,21 +31,29 @@ def _isTheSameInAllSets(case):
 	return case.startswith(_PACKER) and not any("HEXMEMBRANE_WIDEST" in file.read_text() for file in _CHECKOUT.glob("pkg/kernels/packing/*"))
 
 
-def _cases():
+def _listing():
+	"""(suite with its point, type of a typed suite, test) of all cases."""
 	program = os.path.join(_BUILD, _PLUGINS)
 	if not os.path.isfile(program):
-		return []
-	listing = subprocess.run([program, "--gtest_list_tests"], capture_output=True, text=True, check=True).stdout
-	cases, suite = [], ""
-	for line in listing.splitlines():
-		name = line.split("#")[0].rstrip()
+		return
+	suite, kind = "", ""
+	for line in subprocess.run([program, "--gtest_list_tests"], capture_output=True, text=True, check=True).stdout.splitlines():
+		name, _, remark = (part.rstrip() for part in line.partition("#"))
 		if not name or name.startswith("Running main"):
 			continue
 		if name.startswith("  "):
-			cases.append(suite + name.strip())
+			yield suite, kind, name.strip()
 		else:
-			suite = name
-	return cases
+			suite, kind = name, remark.partition("TypeParam = ")[2]
+
+
+def _cases():
+	return [suite + test for suite, _, test in _listing()]
+
+
+def _namesInCTest():
+	"""CMake names the cases of a typed suite by the type, where GoogleTest numbers it."""
+	return [f"{suite.split('/')[0]}.{test}<{kind}>" if kind else suite + test for suite, kind, test in _listing()]
 
 
 def test_kernelTestsWereBuilt():
@@ -75,5 +83,5 @@ def test_kernelsAreOfTheSet(program):
 def test_ctestFindsTheCases():
 	"""What a developer without pytest runs; a name has the program before it."""
 	listing = subprocess.run(["ctest", "--test-dir", _BUILD, "--show-only"], capture_output=True, text=True, check=True).stdout
-	named = set(re.findall(r"Test +#\d+: (\S+)", listing))
-	assert named == {"%s/%s" % (program, case) for program in [_PLUGINS, *_SETS] for case in _cases()}
+	named = set(re.findall(r"Test +#\d+: (.+)", listing))
+	assert named == {"%s/%s" % (program, case) for program in [_PLUGINS, *_SETS] for case in _namesInCTest()}
