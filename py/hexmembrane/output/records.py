@@ -206,16 +206,18 @@ class Records:
 	:param keep: bytes to keep of an existing file (a checkpoint's :meth:`position`); None starts anew.
 	:raises ValueError: the existing file is shorter than ``keep`` or has other columns.
 	:raises OSError: the file cannot be written, with its name; what is in it are whole rows.
+
+	Attribute: ``size``, bytes written so far.
 	"""
 
 	def __init__(self, path, keep=None):
 		self.path = pathlib.Path(path)
-		self._digest, self._size = hashlib.sha256(), 0
+		self._digest, self.size = hashlib.sha256(), 0
 		if keep is None:
 			self._file = open(self.path, "wb", buffering=0)
 			self._write(_header())
 			return
-		self._digest, self._size = Kept(path, keep).digest, keep
+		self._digest, self.size = Kept(path, keep).digest, keep
 		self._file = open(self.path, "r+b", buffering=0)
 		self._file.truncate(keep)
 		self._file.seek(keep)
@@ -229,10 +231,10 @@ class Records:
 				raise FileNotFoundError(errno.ENOENT, "it was removed while the test was running")
 		except OSError as error:
 			with contextlib.suppress(OSError):
-				self._file.truncate(self._size)
+				self._file.truncate(self.size)
 			raise type(error)(error.errno, error.strerror, str(self.path)) from None
 		self._digest.update(line)
-		self._size += len(line)
+		self.size += len(line)
 
 	def append(self, row):
 		"""Write one row, a mapping with exactly the columns' names; values are written so that they read back exactly.
@@ -260,7 +262,7 @@ class Records:
 	def position(self):
 		"""Bytes written so far; they are on the disk when this returns."""
 		os.fsync(self._file.fileno())
-		return self._size
+		return self.size
 
 	@property
 	def sha256(self):

@@ -129,7 +129,7 @@ class TriaxialTest:
 		:raises OSError: the folder cannot be written; the checkpoint before is whole.
 		"""
 		state = self.store.stateName(name)
-		if self.store.isLast(state, O.iter, self.records.position()):
+		if self.store.isLast(state, O.iter, self.records.size):
 			return  # a test that has ended and is resumed
 		with Image.taken() as image:
 			entry = image.write(self.out / state)
