@@ -8,7 +8,6 @@ uncompressed one unseen, and a damaged state may end the process. So Python writ
 import errno
 import gzip
 import hashlib
-import mmap
 import os
 import pathlib
 import resource
@@ -23,7 +22,7 @@ from hexmembrane.run.manifest import CheckpointError, Entry
 _COMPRESSED = ".gz"
 #: Boost's archives have this near their beginning.
 _SIGNATURE = b"serialization::archive"
-_BLOCK = 1 << 20
+_BLOCK = 1 << 18
 
 
 class Image:
@@ -98,19 +97,25 @@ class Image:
 		path = pathlib.Path(path)
 		part = path.with_name("part-" + path.name)
 		try:
-			with open(part, "wb", buffering=0) as file, mmap.mmap(self._file, 0, access=mmap.ACCESS_READ) as content:
+			with open(part, "wb", buffering=0) as file:
 				target = _Hashed(file)
 				if path.name.endswith(_COMPRESSED):
 					with gzip.GzipFile(filename="", fileobj=target, mode="wb", compresslevel=6, mtime=0) as packer:
-						packer.write(content)
+						self._copy(packer)
 				else:
-					target.write(content)
+					self._copy(target)
 				os.fsync(file.fileno())
 			part.replace(path)
 		except OSError as error:
 			_remove(part)
 			raise OSError(error.errno, error.strerror, str(path)) from None
 		return target.entry()
+
+	def _copy(self, target):
+		done = 0
+		while block := os.pread(self._file, _BLOCK, done):
+			target.write(block)
+			done += len(block)
 
 	def close(self):
 		os.close(self._file)
