@@ -150,6 +150,11 @@ def read(folder):
 		raise CheckpointError(f"manifest = '{path}': there is none; fix: run without --resume") from None
 	except OSError as error:
 		raise CheckpointError(f"manifest = '{path}': cannot be read ({error.strerror}); fix: make it readable") from None
+	return parse(data, path)
+
+
+def parse(data, path):
+	"""The :class:`Manifest` that the bytes of the file ``path`` are. :raises CheckpointError: as :func:`read`."""
 	body, seal, rest = data.rpartition(_SEAL)
 	if not seal or rest != hashlib.sha256(body).hexdigest().encode() + b'"\n}\n':
 		raise CheckpointError(f"manifest = '{path}': is damaged (it is not as it was written); fix: {_ANEW}")
