@@ -12,10 +12,13 @@ import random
 import shutil
 import sys
 
-import tiny
 from yade import O
 
-from hexmembrane.run.command import main
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+
+import tiny  # noqa: E402
+
+from hexmembrane.run.command import main  # noqa: E402
 
 
 def flipped(folder, choice):

@@ -65,7 +65,7 @@ def readOnly(count, config, work, expected):
 	out = work / "out"
 	test = tiny.start(tiny.command(config, out))
 	if not tiny.awaitRows(test, out, count):
-		return "ended too early"
+		return "not tried: the test was over too early"
 	mount(os.fsencode(out), out, None, _BIND)
 	mount(b"none", out, None, _BIND | _REMOUNT | _RDONLY)
 	code, seconds, errors = tiny.awaitEnd(test)
