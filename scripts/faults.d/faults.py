@@ -102,7 +102,8 @@ class Trials:
 
 	# One bit
 
-	def flips(self, count):
+	def stopped(self):
+		"""The folder of a test that was killed in its shear, made once."""
 		stopped = self.folder / "stopped"
 		if not stopped.exists():
 			test = tiny.start(tiny.command(self.config, stopped))
@@ -110,6 +111,10 @@ class Trials:
 				raise RuntimeError("the test ended before it was stopped")
 			test.kill()
 			test.communicate()
+		return stopped
+
+	def flips(self, count):
+		stopped = self.stopped()
 		todo = [k for k in range(count) if self.wanted(f"flip {k}")]
 		while todo:
 			todo = todo[self._flipSome(stopped, todo) :]

@@ -43,7 +43,7 @@ def test_killedAtAWrite(trials, tmp_path):
 @pytest.mark.parametrize("more", [(), ("--resume",)])
 def test_twoAtOnce(trials, runHere, more):
 	"""Nothing is changed in a folder whose lock another run has."""
-	stopped = trials.folder / "stopped"
+	stopped = trials.stopped()
 	before = {path: path.read_bytes() for path in stopped.glob("*.*") if path.name != "run.lock"}
 	with FolderLock(stopped):
 		code, _, errors = runHere(trials.config, "--out", stopped, *more)
@@ -148,7 +148,7 @@ def test_readOnly(harmedHere, monkeypatch):
 
 def test_theStateOfAnotherTest(trials, harmedHere):
 	"""Put under a checkpoint, it is told and not used; the checkpoint before goes on to the same rows."""
-	shutil.copytree(trials.folder / "stopped", harmedHere.out)
+	shutil.copytree(trials.stopped(), harmedHere.out)
 	last = manifest.read(harmedHere.out).checkpoints[-1].state
 	(harmedHere.out / last).write_bytes(gzip.decompress((trials.whole / "sheared.yade.gz").read_bytes()))
 	code, errors = harmedHere.run("--resume")
@@ -157,7 +157,7 @@ def test_theStateOfAnotherTest(trials, harmedHere):
 
 
 def test_changedConfiguration(trials, harmedHere):
-	shutil.copytree(trials.folder / "stopped", harmedHere.out)
+	shutil.copytree(trials.stopped(), harmedHere.out)
 	before = (harmedHere.out / "records.csv").read_bytes()
 	with open(harmedHere.out / "config.yaml", "a") as file:
 		file.write("#\n")
