@@ -10,7 +10,7 @@ import shutil
 import sys
 
 import pytest
-from hexmembrane.run import manifest, stages, states
+from hexmembrane.run import checkpoints, manifest, stages, states
 from hexmembrane.run.lock import FolderLock
 from hexmembrane.run.manifest import CheckpointError
 from tinyTest import configure
@@ -64,7 +64,7 @@ def harmedHere(trials, tmp_path, runHere):
 		def goOn(self):
 			found = tiny.rows(self.out)
 			assert found == trials.expected[: len(found)]
-			code, errors = self.run(*(["--resume"] if (self.out / "manifest.json").exists() else []))
+			code, errors = self.run(*(["--resume"] if checkpoints.exist(self.out) else []))
 			assert code == 0, errors
 			return tiny.rows(self.out) == trials.expected
 
@@ -222,3 +222,17 @@ def test_rowsFinerThanSteps(trials, tmp_path, runHere):
 	assert (code, errors) == (0, "")
 	steps = [row[1] for row in tiny.rows(tmp_path / "from")[1:]]
 	assert len(set(steps)) == len(steps) == most + 1
+
+
+def test_stoppedBeforeItsFirstCheckpoint(harmedHere, monkeypatch):
+	"""--resume says to begin anew, the same command does."""
+
+	def stop(test, name=None):
+		raise KeyboardInterrupt
+
+	monkeypatch.setattr(stages.TriaxialTest, "checkpoint", stop)
+	assert harmedHere.run()[0] == 130
+	monkeypatch.undo()
+	code, errors = harmedHere.run("--resume")
+	assert code == 2 and "there is none yet; fix: the same command without --resume" in errors
+	assert harmedHere.goOn()

@@ -62,8 +62,16 @@ def test_roundTrip(folder):
 	assert [c.state for c in found.checkpoints] == ["checkpoint-1.yade", "checkpoint-2.yade"]
 	assert found.checkpoints[1].reference == REFERENCE and found.versions["hexmembrane"]
 	store = Store.existing(folder)
+	assert checkpoints.exist(folder)
 	assert store.last().rows == 3 and store.last().last == rowOf(2) and store.last().warnings == []
 	assert sorted(p.name for p in folder.iterdir()) == ["checkpoint-1.yade", "checkpoint-2.yade", "config.yaml", "consolidated.yade.gz", "manifest.json", "records.csv"]
+
+
+def test_ofAnotherVersion(folder):
+	content = contentOf(folder)
+	content["versions"] = {"hexmembrane": "0.0.9"}
+	(folder / "manifest.json").write_bytes(sealed(content))
+	assert "the test was begun with hexmembrane 0.0.9, this is " in Store.existing(folder).last().warnings[0]
 
 
 def test_twoAreKept(folder):

@@ -119,7 +119,7 @@ class Store:
 			wrong, kept = self._fault(checkpoint)
 			if not wrong:
 				used = f"; the checkpoint before, at step {checkpoint.step}, is used"
-				return Resumed(checkpoint, kept, [fault + used for fault in faults] + self._unused(checkpoint))
+				return Resumed(checkpoint, kept, [fault + used for fault in faults] + self._unused(checkpoint) + self._others())
 			faults.append(wrong)
 		raise CheckpointError(
 			f"checkpoint = '{self.folder}': no checkpoint is whole ({'; '.join(faults)}); fix: put the files back as they were, or run without --resume in another folder"
@@ -147,6 +147,10 @@ class Store:
 		paths = {name: self.folder / name for name in others if name not in needed}
 		faults = {name: others[name].fault(path) for name, path in paths.items() if path.exists()}
 		return [f"file '{paths[name]}' {wrong}; the test goes on without it" for name, wrong in faults.items() if wrong]
+
+	def _others(self):
+		now, before = Manifest().versions, self.manifest.versions
+		return [f"the test was begun with {name} {before.get(name)}, this is {now[name]}" for name in now if before.get(name) != now[name]]
 
 	def goOnFrom(self, resumed):
 		"""Give up checkpoints after this one, and what earlier runs have left unfinished."""
@@ -198,8 +202,11 @@ def _refuseForeign(folder):
 
 
 def exist(folder):
-	"""Whether a folder has a checkpoint. :raises CheckpointError: its manifest is damaged."""
-	return (pathlib.Path(folder) / manifest.NAME).is_file() and bool(manifest.read(folder).checkpoints)
+	"""Whether a folder has a test to resume: a checkpoint, or a damaged manifest, which --resume then tells."""
+	try:
+		return (pathlib.Path(folder) / manifest.NAME).exists() and bool(manifest.read(folder).checkpoints)
+	except CheckpointError:
+		return True
 
 
 def differences(old, new, path=""):

@@ -31,17 +31,16 @@ def _madeFolder(out):
 	return out
 
 
-def _storeOf(out, resume, tell):
-	"""The folder's files, checked; a test that was stopped before its first checkpoint begins anew."""
+def _storeOf(out, resume):
+	"""The folder's files, checked."""
 	if not resume:
 		return Store.begin(out)
 	store = Store.existing(out)
-	if store.begun:
-		return store
-	if store.manifest.files:
+	if not store.begun and store.manifest.files:
 		raise CheckpointError(f"checkpoint = '{out}': has a specimen alone; fix: run in another folder with specimen.packing: {out / 'packing.txt'}")
-	tell(f"'{out}' has no checkpoint yet: the test begins anew")
-	return Store.begin(out)
+	if not store.begun:
+		raise CheckpointError(f"checkpoint = '{out}': there is none yet; fix: the same command without --resume, which begins anew")
+	return store
 
 
 def _sameTest(config, store):
@@ -135,7 +134,7 @@ def run(config, out, resume=False, until="shear", start=None, quiet=False):
 	store = None
 	try:
 		with FolderLock(out):
-			store = _storeOf(out, resume, tell)
+			store = _storeOf(out, resume)
 			return _run(config, store, until, start, quiet, say, tell)
 	except OSError as error:
 		if error.errno is None or isinstance(error, BrokenPipeError):
