@@ -126,7 +126,8 @@ class Trials:
 		shutil.rmtree(work, ignore_errors=True)
 		work.mkdir()
 		words = [sys.executable, tiny.LAUNCH, "1", HERE / "flips.py", self.kind, todo[0], count, self.config, stopped, work]
-		process = subprocess.Popen([*map(str, words)], env=tiny.environment(), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+		with open(self.folder / "flips.log", "w") as log:
+			process = subprocess.Popen([*map(str, words)], env=tiny.environment(), stdout=subprocess.PIPE, stderr=log, text=True)
 		done, place, begun = 0, None, time.monotonic()
 		for line in process.stdout:
 			found = json.loads(line)
@@ -136,7 +137,7 @@ class Trials:
 			self._judgeFlip(found, place, time.monotonic() - begun)
 			done, place, begun = done + 1, None, time.monotonic()
 		if process.wait() != 0 and place is None and done < count:
-			raise RuntimeError(f"flips.py ends with {process.returncode}")
+			raise RuntimeError(f"flips.py ends with {process.returncode}, see {self.folder / 'flips.log'}")
 		if place is not None:
 			self.keep(f"flip {place['number']}", f"{place['file']} bit {place['bit']}: the process ends with {process.returncode}", 0)
 			done += 1
@@ -218,8 +219,11 @@ class Trials:
 		test = tiny.start(tiny.command(self.config, out))
 		if not tiny.awaitRows(test, out, count):
 			return EARLY
+		over = (out / "sheared.yade.gz").exists()
 		test.send_signal(number)
 		code, seconds, _ = tiny.awaitEnd(test)
+		if over and code == 0:
+			return EARLY
 		if code in (None, 0) or seconds > tiny.PATIENCE:
 			return f"exit code {code} after {seconds:.0f} s"
 		return tiny.goOn(self.config, out, self.expected)
