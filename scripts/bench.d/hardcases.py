@@ -153,6 +153,7 @@ CASES = [
 	Case("membrane ten times softer, bends freely", {"membrane": {"young": 1.2e5, "bendingStiffness": 0.0}}, expect="done or stopped",
 		warns="may fold between the grains", bounds=anySoil()),
 	Case("membrane ten times stiffer", sheet(6000), bounds={"largest q/sigma3": (0.8, 3)}),
+	Case("weak coarse sheet, 400 kPa", {"specimen": {"seed": 7}, "membrane": {"young": 5e5, "thickness": 3e-4, "sizeRatio": 1.5}, "consolidation": {"pressure": 4e5}}),
 	Case("R over r 2", {"membrane": {"sizeRatio": 2.0}}),
 	Case("R over r 7", {"membrane": {"sizeRatio": 7.0}}, expect="refused", says="membrane.sizeRatio"),
 	Case("R over r 0.2", {"membrane": {"sizeRatio": 0.2}, "shear": {"strain": 0.02}}),
