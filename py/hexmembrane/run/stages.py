@@ -369,7 +369,8 @@ def checkRows(config):
 	bottom, top = Scene().faces()
 	largest = mostRows(config, (1 - _SHORTER) * (top - bottom))
 	if config.output.records > largest:
-		raise ConfigError("output.records", config.output.records, f"is finer than the steps of shear, of {O.dt:.4g} s", f"at most {largest}, or a lower shear.velocity")
+		wrong = f"is finer than the steps of shear, of {O.dt:.4g} s"
+		raise ConfigError("output.records", config.output.records, wrong, f"at most {largest}, or a lower shear.velocity")
 
 
 def _lostError():
