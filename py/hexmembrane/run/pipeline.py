@@ -9,8 +9,8 @@ from hexmembrane import configuration
 from hexmembrane.configuration import Config, ConfigError, toDict
 from hexmembrane.configuration.schema import freeKeys
 from hexmembrane.output.plots import plot
-from hexmembrane.run import checkpoints, stages
-from hexmembrane.run.progress import clock
+from hexmembrane.run import checkpoints, estimate, stages
+from hexmembrane.run.progress import clock, tell
 from hexmembrane.scene import accuracy, builder, specimen
 from hexmembrane.scene.handles import Scene
 
@@ -61,12 +61,18 @@ def _wantOwnSettings(config):
 		)
 
 
-def _settle(config, say):
-	"""Choose what ``accuracy`` leaves open; the error budget of the settings."""
+def prepare(config, out, say):
+	"""Choose what ``accuracy`` leaves open, say what the test needs, refuse what cannot be; the error budget of the settings."""
+	estimate.requireThreads(config)
+	estimate.requireTravel(config)
 	radii = specimen.plannedRadii(config)
 	if config.accuracy is not None:
 		chosen = accuracy.choose(config, radii)
 		say(f"accuracy {100 * config.accuracy:g} %: " + ", ".join(f"{key} = {value:g}" for key, value in chosen.items()))
+	estimate.requireStiffness(config)
+	needs = estimate.Estimate.of(config, radii)
+	needs.require(config, estimate.Machine.here(out))
+	say(needs.line())
 	budget = accuracy.budget(config, radii)
 	for line in budget.lines():
 		say(line)
@@ -89,15 +95,15 @@ def run(config, out, resume=False, until="shear", start=None, quiet=False):
 		raise ConfigError("--until", until, "is no stage", f"use {', '.join(STAGES)}")
 	if resume and start is not None:
 		raise ConfigError("--from", str(start), "a resumed test starts from its own checkpoint", "leave out one of --from and --resume")
-	out = _freshFolder(out, resume)
 
 	def say(text):
 		if not quiet:
-			print(text, flush=True)
+			tell(text)
 
 	if start is not None:
 		_wantOwnSettings(config)
-	budget = _settle(config, (lambda text: None) if resume else say)
+	budget = prepare(config, out, (lambda text: None) if resume else say)
+	out = _freshFolder(out, resume)
 	if resume:
 		facts = checkpoints.read(out)
 		_sameTest(config, out)
