@@ -123,7 +123,7 @@ runBeside() {
 	trap 'terminate $pid' TERM
 	while :; do
 		status=0
-		wait "$pid" || status=$?
+		wait "$pid" 2>/dev/null || status=$?
 		kill -0 "$pid" 2>/dev/null || break
 	done
 	exit "$status"

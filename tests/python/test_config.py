@@ -174,6 +174,8 @@ def test_freeKeys():
 		"consolidation.tolerance",
 		"consolidation.maxSteps",
 		"consolidation.timeLimit",
+		"shear.pressureTolerance",
+		"shear.stopOutsideTolerance",
 		"numerics.threads",
 		"output.vtkEvery",
 		"output.checkpointEvery",

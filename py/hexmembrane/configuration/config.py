@@ -273,6 +273,17 @@ class Shear:
 	velocity: float = key(0.02, "speed at which the platens approach each other", "m/s", low=0, high=10, openLow=True)
 	moving: str = key("top", "platens that move; both: half the velocity each", "", choices=("top", "both"))
 	rampStrain: float = key(0.0005, "axial strain over which the velocity rises smoothly from 0", "", low=0, high=0.1)
+	pressureTolerance: float = key(
+		0.05,
+		"distance of the transmitted pressure from what the lateral boundary is to hold, as a share of sigma3 (column sigma3_distance), beyond which the log "
+		"tells of it",
+		"",
+		low=0,
+		high=10,
+		openLow=True,
+		free=True,
+	)
+	stopOutsideTolerance: bool = key(False, "a distance beyond pressureTolerance stops the test with an error; the last checkpoint stays", free=True)
 
 
 @dataclasses.dataclass
