@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a test needs, told before anything is made: steps, time, memory, disk. What is beyond the machine is refused. Uses nothing of YADE.
 
-Estimates, good to a factor of two: the time step is that of the grains, the membrane's contacts and its bonds; the rest after the pressure's rise is taken
-to last twice as long as the rise.
+Estimates, good to a factor of two: the time step is that of the grains, the membrane's contacts and its bonds; what comes after the pressure's rise
+is taken to last 1.5 times as long as the rise.
 """
 
 import dataclasses
@@ -101,7 +101,7 @@ class Estimate:
 		step = _step(config, radii, particleRadius)
 		keys, shear = config.consolidation, config.shear
 		rise = (keys.rampTime or RISE * timestep.inertialTime(radii, config.specimen.density, keys.pressure)) / step
-		consolidation = min(3 * rise + config.output.consolidationSteps, keys.maxSteps)
+		consolidation = min(2.5 * rise + config.output.consolidationSteps, keys.maxSteps)
 		sheared = (shear.strain + shear.rampStrain) * config.specimen.height / (shear.velocity * step)
 		spheres = len(radii) + particles
 		frames = config.output.records / config.output.vtkEvery + 2 if config.output.vtkEvery else 0

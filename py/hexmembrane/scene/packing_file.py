@@ -26,6 +26,8 @@ import tempfile
 
 import numpy
 
+from hexmembrane.configuration.schema import shown
+
 MAGIC = "hexmembrane packing"
 VERSION = 1
 #: A header longer than this is no header.
@@ -262,7 +264,7 @@ def _header(text, wrong):
 			wrong(2, f"the header has no '{key}'")
 	for key in ("radius", "height", "porosity", "maxOverlap"):
 		if not _isNumber(header[key]) or header[key] < 0:
-			wrong(2, f"'{key}' is {header[key]!r}, not a finite number >= 0")
+			wrong(2, f"'{key}' is {shown(header[key])}, not a finite number >= 0")
 	if isinstance(header["grains"], bool) or not isinstance(header["grains"], int) or header["grains"] < 1:
 		wrong(2, f"'grains' is {header['grains']!r}, not a number of spheres")
 	if not isinstance(header["origin"], list) or len(header["origin"]) != 3 or not all(_isNumber(v) for v in header["origin"]):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""yade.py [YADE'S ARGUMENTS]: YADE's own program, but for the network ports that it opens.
+"""withoutPorts.py [YADE'S ARGUMENTS]: YADE's own program, but for the network ports that it opens.
 
 YADE listens on all addresses: from port 9000 with a Python prompt whose cookie is one of 60,000, from port 21000 with XMLRPC without a password. Here
 ``yade.remote.runServers`` opens nothing. With HEXMEMBRANE_REMOTE=on it opens both on the loopback address, the prompt with a cookie of 128 bits. Every
@@ -68,7 +68,7 @@ if __name__ == "__main__":
 	openStreams()
 	program = os.environ.get("YADE_EXECUTABLE") or shutil.which("yade-double")
 	if not program:
-		sys.exit("yade.py: yade-double is not in PATH")
+		sys.exit("withoutPorts.py: yade-double is not in PATH")
 	asked = os.environ.get("HEXMEMBRANE_REMOTE", "off")
 	if asked not in ("on", "off"):
 		sys.exit(f"HEXMEMBRANE_REMOTE = {asked}: unknown; fix: on or off")
