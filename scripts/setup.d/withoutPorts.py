@@ -9,7 +9,6 @@ user of the machine can then ask XMLRPC and stop the run by it.
 import importlib.abc
 import importlib.machinery
 import os
-import runpy
 import secrets
 import shutil
 import sys
@@ -73,5 +72,7 @@ if __name__ == "__main__":
 	if asked not in ("on", "off"):
 		sys.exit(f"HEXMEMBRANE_REMOTE = {asked}: unknown; fix: on or off")
 	sys.meta_path.insert(0, OtherServers(onLoopback if asked == "on" else nothing))
-	sys.argv[0] = program
-	runpy.run_path(program, run_name="__main__")
+	sys.argv[0] = __file__ = program
+	with open(program, encoding="utf-8") as file:
+		# here and not by runpy: YADE's libraries look for __main__ while they start
+		exec(compile(file.read(), program, "exec"))
