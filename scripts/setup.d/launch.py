@@ -4,7 +4,8 @@
 YADE's own program prints its banner, opens network ports for remote control and ends in a shell of its own; it can be imported as
 well, which starts YADE only. The exit code is that of the script.
 
-A signal while YADE starts ends the process at once: an exception must not pass through its libraries. Standard streams that are closed are opened
+A signal while YADE starts ends the process at once: an exception must not pass through its libraries. Whoever starts this blocks SIGINT and SIGTERM
+(runPython of setup.sh), which Python would meet with a traceback before it reads the first line here. Standard streams that are closed are opened
 on /dev/null, lest a file of the script gets their place.
 """
 
@@ -51,6 +52,7 @@ def endedBySignals():
 	before = {number: handler for number, handler in before.items() if handler is not signal.SIG_IGN}
 	for number in before:
 		signal.signal(number, end)
+	signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, signal.SIGTERM})
 	yield
 	for number, handler in before.items():
 		signal.signal(number, handler)

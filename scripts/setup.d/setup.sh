@@ -129,6 +129,10 @@ runBeside() {
 	exit "$status"
 }
 
+# runPython SCRIPT...: runBeside of launch.py or withoutPorts.py. They take on the signals that are blocked until then: Python would meet
+# them with a traceback while it starts.
+runPython() { runBeside env --block-signal=INT,TERM python3 "$@"; }
+
 # Bubblewrap has exactly one child, the command; without it (natively) the process is the command itself.
 # The command may end between the look and the signal: then there is nobody to tell, and the caller's wait gives its status.
 terminate() {

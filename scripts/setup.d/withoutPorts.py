@@ -11,12 +11,15 @@ import importlib.machinery
 import os
 import secrets
 import shutil
+import signal
 import sys
 import xmlrpc.server
 
 from launch import openStreams
 
 LOOPBACK = "127.0.0.1"
+#: Held back until YADE's libraries are there: an exception must not pass through them.
+SIGNALS = {signal.SIGINT, signal.SIGTERM}
 
 
 def nothing():
@@ -44,7 +47,7 @@ def onLoopback():
 
 
 class OtherServers(importlib.abc.MetaPathFinder):
-	"""Imports ``yade.remote`` with another ``runServers``."""
+	"""Imports ``yade.remote``, the last of YADE's start, with another ``runServers``."""
 
 	def __init__(self, runServers):
 		self.runServers = runServers
@@ -58,12 +61,14 @@ class OtherServers(importlib.abc.MetaPathFinder):
 		def exec_module(module):
 			execute(module)
 			module.runServers = self.runServers
+			signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
 
 		spec.loader.exec_module = exec_module
 		return spec
 
 
 if __name__ == "__main__":
+	signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
 	openStreams()
 	program = os.environ.get("YADE_EXECUTABLE") or shutil.which("yade-double")
 	if not program:

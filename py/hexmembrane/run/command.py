@@ -39,6 +39,7 @@ def _restartWithThreads(wanted):
 	if not launcher or os.environ.get("HEXMEMBRANE_RESTARTED"):
 		raise ConfigError("numerics.threads", wanted, f"YADE runs with {O.numThreads}", f"start YADE with -j {wanted}, or use scripts/run")
 	os.environ["HEXMEMBRANE_RESTARTED"] = "1"
+	signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})  # the launcher takes them on
 	os.execv(sys.executable, [sys.executable, launcher, str(wanted), *sys.argv])
 
 
