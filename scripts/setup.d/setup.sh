@@ -46,7 +46,7 @@ chooseHost() {
 		yadeSource=/usr/src/yade
 		hostId="root ${root##*-}"
 		enterRoot "$root"
-		"${entry[@]}" true 2>"$cache/enter.log" || dieWithoutNamespaces "$(tail -n 1 "$cache/enter.log")"
+		requireEntry "${entry[@]}"
 	fi
 	entry+=(HEXMEMBRANE_BUILD="$buildDir")
 }
