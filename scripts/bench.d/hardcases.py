@@ -154,7 +154,7 @@ CASES = [
 		warns="may fold between the grains", bounds=anySoil()),
 	Case("membrane ten times stiffer", sheet(6000), bounds={"largest q/sigma3": (0.8, 3)}),
 	Case("R over r 2", {"membrane": {"sizeRatio": 2.0}}),
-	Case("R over r 7", {"membrane": {"sizeRatio": 7.0}}, expect="refused", says="HexMembrane."),
+	Case("R over r 7", {"membrane": {"sizeRatio": 7.0}}, expect="refused", says="membrane.sizeRatio"),
 	Case("R over r 0.2", {"membrane": {"sizeRatio": 0.2}, "shear": {"strain": 0.02}}),
 	Case("slender", {"specimen": {"radius": 0.01, "height": 0.08}}),
 	Case("flat", {"specimen": {"radius": 0.03, "height": 0.03}}),
@@ -169,7 +169,7 @@ CASES = [
 	Case("3 times the critical step", drive=casescenes.tooLong, expect="stopped", says="time step"),
 	Case("1e6 steps at rest", again=False, drive=casescenes.rest(1000000),
 		bounds={"drift of porosity": (0, 1e-9), "drift of pressure": (0, 1e-7), "energy": (0, 1e-6)}),
-	Case("a script tilts the top platen", drive=casescenes.tilting),
+	Case("a script tilts the top platen", drive=casescenes.tilting, expect="stopped", says="was turned by"),
 	*(Case(f"tilted platen, {tier}", scene=casescenes.tilted(tier), bounds=dict.fromkeys(("force", "turning force", "turned", "driven tilt"), (0, 1e-9)))
 		for tier in ("reference", "compact")),
 	*(Case(f"collisions of pairs, {tier}", scene=casescenes.pairs(tier), bounds={"against central differences": (0, 1e-9)})
