@@ -34,6 +34,8 @@ def test_againstATest(tmp_path, runHere):
 	"""The line comes first; its spheres and steps, and the disk, are those of the test to a factor of two."""
 	code, said, error = runHere(configure(tmp_path), "--out", tmp_path / "out")
 	assert code == 0, error
+	# what test_pressure_watch.py has of other tests: here the pressure is held
+	assert "pressureTolerance" not in error and "% from its target at most, at " in error and "not held" not in error
 	found = re.match(r"work: ([\d,]+) spheres, about ([\d,]+) steps of consolidation and ([\d,]+) of shear, [\d:]+ for the steps on one thread; memory \d+ MB, disk ([\d.]+) MB\n", said)
 	spheres, consolidation, shear, disk = (float(text.replace(",", "")) for text in found.groups())
 	rows = [row.split(",")[:2] for row in (tmp_path / "out" / "records.csv").read_text().splitlines()[1:]]

@@ -15,7 +15,7 @@ from hexmembrane.scene import packing_file, specimen
 from mutations import mutations
 from tinyTest import GRADATION, TINY
 
-COUNT = int(os.environ.get("HEXMEMBRANE_FUZZ", 600))
+COUNT = int(os.environ.get("HEXMEMBRANE_FUZZ", 400))
 SEED = os.environ.get("HEXMEMBRANE_FUZZ_SEED", "1")
 #: Longest time of a processor [s] that an input may take.
 PATIENCE = 10
