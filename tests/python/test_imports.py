@@ -24,6 +24,8 @@ WITHOUT_YADE = (
 	"run.checkpoints",
 	"run.estimate",
 	"run.pressure_watch",
+	"run.lock",
+	"run.manifest",
 	"run.progress",
 )
 

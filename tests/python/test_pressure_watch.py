@@ -5,6 +5,7 @@ import numpy
 import pytest
 from hexmembrane.configuration.config import Shear
 from hexmembrane.output import records
+from hexmembrane.run import checkpoints
 from hexmembrane.run.pressure_watch import PressureWatch
 from tinyTest import configure
 
@@ -41,7 +42,7 @@ def test_wallThatIsTooSlow(tmp_path, runHere, stop):
 	assert max(abs(distance[i]) for i in shear) > 0.05
 	if stop:
 		assert code == 1 and "error: shear.pressureTolerance = 0.05: at " in error and "; the last checkpoint is in" in error
-		assert abs(distance[-1]) > 0.05 and (tmp_path / "out" / "checkpoint.json").is_file()
+		assert abs(distance[-1]) > 0.05 and checkpoints.exist(tmp_path / "out")
 	else:
 		assert code == 0
 		assert error.count("WARNING: shear.pressureTolerance") == 1 and "WARNING, the pressure was not held" in error

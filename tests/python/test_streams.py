@@ -10,7 +10,7 @@ import time
 
 import pytest
 from hexmembrane.output import records
-from hexmembrane.run import command
+from hexmembrane.run import checkpoints, command
 from hexmembrane.run.progress import Progress, tell
 from tinyTest import LAUNCHER, configure, environment
 from tinyTest import command as tinyCommand
@@ -73,7 +73,7 @@ def test_wholeTest(tmp_path):
 def test_shortTest(tmp_path, redirection):
 	result = shell(tmp_path, redirection, configure(tmp_path), "--out", tmp_path / "out", "--until", "boundary")
 	assert result.returncode == 0, result.stderr
-	assert (tmp_path / "out" / "checkpoint.json").is_file()
+	assert checkpoints.exist(tmp_path / "out")
 	assert result.stdout.count("\n") == ("head" in redirection)
 
 
@@ -102,7 +102,7 @@ def test_inAStage(tmp_path, number, code, words):
 	"""With a checkpoint the advice is to resume from it, and that can be done."""
 	config, out = configure(tmp_path, output={"records": 400, "checkpointEvery": 2, "vtkEvery": 0}), tmp_path / "out"
 	process = subprocess.Popen(tinyCommand(config, "--out", out), env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-	while not (out / "checkpoint.json").is_file():
+	while not checkpoints.exist(out):
 		assert process.poll() is None, process.communicate()
 		time.sleep(0.05)
 	process.send_signal(number)

@@ -14,8 +14,9 @@ from hexmembrane import configuration
 from hexmembrane.configuration import ConfigError
 from hexmembrane.configuration.schema import LONGEST_PATH, plainText
 from hexmembrane.run import checkpoints
-from hexmembrane.run.checkpoints import CheckpointError
 from hexmembrane.run.estimate import requireThreads
+from hexmembrane.run.lock import LockError
+from hexmembrane.run.manifest import CheckpointError
 from hexmembrane.run.pipeline import STAGES, run
 from hexmembrane.run.progress import tell
 
@@ -61,14 +62,6 @@ def _terminable():
 		signal.signal(signal.SIGTERM, before)
 
 
-def _canResume(out):
-	try:
-		checkpoints.read(out)
-	except CheckpointError:
-		return False
-	return True
-
-
 def main(argv):
 	"""The command line; returns the exit code: 0, 2 for bad input, 1 for a test that failed, 130 when interrupted, 143 when terminated."""
 	arguments = _arguments(argv)
@@ -80,7 +73,7 @@ def main(argv):
 			_restartWithThreads(config.numerics.threads)
 			out = pathlib.Path(plainText("--out", arguments.out or os.path.join("out", pathlib.Path(arguments.config).stem), LONGEST_PATH))
 			run(config, out, arguments.resume, arguments.until, arguments.start, arguments.quiet)
-	except (ConfigError, CheckpointError) as error:
+	except (ConfigError, CheckpointError, LockError) as error:
 		tell(f"error: {error}", sys.stderr)
 		return 2
 	except (ValueError, RuntimeError, OSError) as error:
@@ -88,6 +81,6 @@ def main(argv):
 		return 1
 	except KeyboardInterrupt as signalled:
 		how, code = ("terminated", 143) if isinstance(signalled, Terminated) else ("interrupted", 130)
-		tell(how + (": --resume goes on from the last checkpoint" if out and _canResume(out) else ", there is no checkpoint yet"), sys.stderr)
+		tell(how + (": --resume goes on from the last checkpoint" if out and checkpoints.exist(out) else ", there is no checkpoint yet"), sys.stderr)
 		return code
 	return 0
