@@ -3,6 +3,7 @@
 
 import json
 import pathlib
+import signal
 import subprocess
 import sys
 import time
@@ -32,8 +33,14 @@ def command(config, out, *more, killAt=None):
 	return [sys.executable, str(LAUNCH), "1", *harm, str(MAIN), str(config), "--out", str(out), *more]
 
 
+def _heedSignals():
+	"""A shell's background job, or nohup, would have a test ignore them."""
+	for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+		signal.signal(number, signal.SIG_DFL)
+
+
 def start(words):
-	return subprocess.Popen(words, env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+	return subprocess.Popen(words, env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, preexec_fn=_heedSignals)
 
 
 def run(words):
