@@ -16,6 +16,8 @@ from tinyTest import LAUNCHER, configure, environment
 from tinyTest import command as tinyCommand
 
 SHORT = {"shear": {"strain": 0.002}, "output": {"records": 4, "checkpointEvery": 1, "vtkEvery": 0}}
+#: A shell's background job ignores SIGINT, and so would the tests in it.
+HEEDED = ["env", "--default-signal=INT,TERM"]
 
 
 class Failing(io.StringIO):
@@ -88,7 +90,7 @@ def test_whileYadeStarts(tmp_path, number, code, words):
 	script.write_text("import time\nprint('started', flush=True)\ntime.sleep(100)\n")
 	for moment in (0.1, 0.6):
 		# as scripts/run does: Python itself, before it reads the launcher, would show a traceback
-		arguments = ["env", "--block-signal=INT,TERM", sys.executable, str(LAUNCHER), "1", str(script)]
+		arguments = [*HEEDED, "--block-signal=INT,TERM", sys.executable, str(LAUNCHER), "1", str(script)]
 		process = subprocess.Popen(arguments, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 		time.sleep(moment)
 		process.send_signal(number)
@@ -101,7 +103,7 @@ def test_whileYadeStarts(tmp_path, number, code, words):
 def test_inAStage(tmp_path, number, code, words):
 	"""With a checkpoint the advice is to resume from it, and that can be done."""
 	config, out = configure(tmp_path, output={"records": 400, "checkpointEvery": 2, "vtkEvery": 0}), tmp_path / "out"
-	process = subprocess.Popen(tinyCommand(config, "--out", out), env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+	process = subprocess.Popen([*HEEDED, *tinyCommand(config, "--out", out)], env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 	while not checkpoints.exist(out):
 		assert process.poll() is None, process.communicate()
 		time.sleep(0.05)
