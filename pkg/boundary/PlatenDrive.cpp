@@ -20,6 +20,8 @@ namespace {
 // Velocity of the approach over sqrt(stress/density). In a specimen h high of grains of size d it is the inertial number times h/d, so grains that are
 // pushed at it stay well below the quasi-static limit of 1e-3.
 constexpr Real approachNumber = 1e-3;
+// Angle (rad) between two steps that counts as turned: far above the rounding of an orientation that is normalized every step.
+constexpr Real turnedTolerance = 1e-9;
 
 [[noreturn]] void stop(const std::string& what) { throw std::runtime_error(what); }
 
@@ -55,8 +57,8 @@ void PlatenDrive::requireSettings() const
 	if (stress <= 0)
 		hexmembrane::reject("PlatenDrive.stress", stress, "a loose packing holds no tension",
 		                    "give a stress > 0 Pa, or unload with mode 'velocity' and a negative velocity");
-	hexmembrane::requireNonNegative("PlatenDrive.damping", damping, "(no unit)");
-	hexmembrane::requirePositive("PlatenDrive.tolerance", tolerance, "(no unit)");
+	hexmembrane::requireIn(hexmembrane::shared::servo_damping, "PlatenDrive.damping", damping, "(no unit)");
+	hexmembrane::requireIn(hexmembrane::shared::servo_tolerance, "PlatenDrive.tolerance", tolerance, "(no unit)");
 	if (!math::isnan(mass)) hexmembrane::requirePositive("PlatenDrive.mass", mass, "kg");
 	if (!math::isnan(contactStiffness)) hexmembrane::requirePositive("PlatenDrive.contactStiffness", contactStiffness, "N/m");
 	if (!math::isnan(maxVelocity)) hexmembrane::requirePositive("PlatenDrive.maxVelocity", maxVelocity, "m/s");
@@ -73,6 +75,11 @@ void PlatenDrive::record(const State& state, Real newForce, const Vector3r& unit
 {
 	// A gap in the steps (the engine was dead, or O.resetTime) is nobody's work.
 	if (scene->iter == lastIter + 1) {
+		const Real turned = state.ori.angularDistance(lastOrientation);
+		if (turned > turnedTolerance)
+			stop("PlatenDrive.platen = " + std::to_string(platen) + ": the platen was turned by " + hexmembrane::formatNumber(turned) +
+			     " rad before iteration " + std::to_string(scene->iter) +
+			     ", and the work of that would be booked nowhere; fix: tilt it before the first step, or turn it without a PlatenDrive");
 		const Real way = (state.pos - lastPosition).dot(unit);
 		const Real done = 0.5 * (force + newForce) * way;
 		displacement += way;
@@ -82,6 +89,7 @@ void PlatenDrive::record(const State& state, Real newForce, const Vector3r& unit
 	force = newForce;
 	lastIter = scene->iter;
 	lastPosition = state.pos;
+	lastOrientation = state.ori;
 }
 
 Real PlatenDrive::approachVelocity() const

@@ -40,8 +40,8 @@ void RadialWallServo::requireSettings() const
 {
 	hexmembrane::requirePositive("RadialWallServo.stress", stress, "Pa");
 	hexmembrane::requirePositive("RadialWallServo.maxVelocity", maxVelocity, "m/s");
-	hexmembrane::requireNonNegative("RadialWallServo.damping", damping, "1");
-	hexmembrane::requirePositive("RadialWallServo.tolerance", tolerance, "1");
+	hexmembrane::requireIn(hexmembrane::shared::servo_damping, "RadialWallServo.damping", damping, "1");
+	hexmembrane::requireIn(hexmembrane::shared::servo_tolerance, "RadialWallServo.tolerance", tolerance, "1");
 	if (!math::isnan(timeLimit)) hexmembrane::requirePositive("RadialWallServo.timeLimit", timeLimit, "s");
 }
 

@@ -4,6 +4,7 @@
 #include "CylinderWall.hpp"
 
 #include "compact/Stepped.hpp"
+#include "SharedValues.hpp"
 
 #include <core/Body.hpp>
 #include <core/GlobalEngine.hpp>
@@ -32,9 +33,9 @@ private:
 		((Body::id_t,bottomPlaten,-1,,"Id of the lower :yref:`Platen`; with topPlaten it gives the specimen's height."))
 		((Body::id_t,topPlaten,-1,,"Id of the upper :yref:`Platen`."))
 		((Real,height,NaN,,"Height of the specimen [m], when no platens are given."))
-		((Real,damping,1,,"Damping ratio $\\zeta$, >= 0; 1 is critical for the contacts alone."))
+		((Real,damping,HEXMEMBRANE_SERVO_DAMPING_DEFAULT,,"Damping ratio $\\zeta$, " HEXMEMBRANE_SERVO_DAMPING_RANGE "; 1 is critical for the contacts alone."))
 		((Real,maxVelocity,NaN,,"Largest velocity of the radius [m/s], and the one of the approach. Required."))
-		((Real,tolerance,0.01,,"Relative error of the stress below which the servo counts as settled."))
+		((Real,tolerance,HEXMEMBRANE_SERVO_TOLERANCE_DEFAULT,,"Relative error of the stress, " HEXMEMBRANE_SERVO_TOLERANCE_RANGE ", below which the servo counts as settled."))
 		((Real,timeLimit,NaN,,"Time [s] after the start or a change of the target within which the servo must have settled once, else the run stops with an error; NaN: none."))
 		((Real,velocity,0,Attr::readonly,"Velocity of the radius, positive inwards [m/s]. |yupdate|"))
 		((Real,radialStress,NaN,Attr::readonly,"Mean radial stress at the last step [Pa], compression positive. |yupdate|"))

@@ -143,9 +143,8 @@ void CompactLoop::warnReaders()
 
 void CompactLoop::prepareEngines()
 {
-	hexmembrane::requireNonNegative("CompactLoop.damping", damping, "1");
-	if (damping >= 1) hexmembrane::reject("CompactLoop.damping", damping, "takes all of every force that drives a motion", "a number below 1");
-	if (substeps < 1) hexmembrane::reject("CompactLoop.substeps", substeps, "must be at least 1", "100, say");
+	hexmembrane::requireIn(hexmembrane::shared::local_damping, "CompactLoop.damping", damping, "1");
+	hexmembrane::requireIn(hexmembrane::shared::substeps, "CompactLoop.substeps", substeps, "steps");
 	if (exportPeriod < 0) hexmembrane::reject("CompactLoop.exportPeriod", exportPeriod, "must not be negative", "0 for never, or a number of iterations");
 	if (!math::isnan(skin)) hexmembrane::requirePositive("CompactLoop.skin", skin, "m");
 	hexmembrane::requirePositive("O.dt", scene->dt, "s");

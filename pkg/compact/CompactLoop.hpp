@@ -2,6 +2,7 @@
 #pragma once
 
 #include "CompactState.hpp"
+#include "SharedValues.hpp"
 
 #include <core/GlobalEngine.hpp>
 
@@ -100,9 +101,9 @@ private:
 		"Errors: ``ValueError`` or ``RuntimeError`` for bodies, materials or engines that it does not know, before anything is changed; a sphere that moves half a skin in one step or is not finite stops the run with its id and the iteration.\n\n"
 		"Example::\n\n\tO.engines=[ForceResetter(),CompactLoop(engines=[bonds,pressure,servo,bottom,top,oRings],damping=.2)]",
 		((vector<shared_ptr<Engine>>,engines,,Attr::triggerPostLoad,"Engines that are stepped inside, in this order: those that implement C++'s ``Stepped``, as :yref:`MembraneBonds`, :yref:`MembranePressure`, :yref:`MembraneRadialServo`, :yref:`PlatenDrive`, :yref:`MembraneORings`, :yref:`RadialWallServo`. They do not stand in ``O.engines``."))
-		((Real,damping,0.2,,"Local damping, as :yref:`NewtonIntegrator.damping` [-], 0 to below 1."))
-		((int,substeps,100,,"Steps in one YADE iteration [-], >= 1."))
-		((Real,skin,NaN,,"Reach of the neighbour lists beyond contact [m]; NaN: 0.3 of the smallest sphere's radius. Larger: longer lists, made more seldom."))
+		((Real,damping,HEXMEMBRANE_LOCAL_DAMPING_DEFAULT,,"Local damping, as :yref:`NewtonIntegrator.damping` [-], " HEXMEMBRANE_LOCAL_DAMPING_RANGE "."))
+		((int,substeps,HEXMEMBRANE_SUBSTEPS_DEFAULT,,"Steps in one YADE iteration [-], " HEXMEMBRANE_SUBSTEPS_RANGE "."))
+		((Real,skin,NaN,,"Reach of the neighbour lists beyond contact [m]; NaN: " BOOST_PP_STRINGIZE(HEXMEMBRANE_LIST_SKIN_DEFAULT) " of the smallest sphere's radius. Larger: longer lists, made more seldom."))
 		((int,exportPeriod,0,,"Iterations after which contacts are written to ``O.interactions`` for YADE's own tools (:yref:`VTKRecorder`, ``unbalancedForce``); 0: never. It costs about a microsecond a contact each time."))
 		((long,listsMade,0,Attr::readonly,"How often neighbour lists were made."))
 		((bool,exported,false,Attr::readonly,"``O.interactions`` holds contacts written by :yref:`exportContacts<CompactLoop.exportContacts>`; they are cleared before the next step."))

@@ -13,7 +13,7 @@ Real CompactLoop::usedSkin(const hexmembrane::SphereAssembly& spheres) const
 	if (!math::isnan(skin)) return skin;
 	Real smallest = std::numeric_limits<Real>::infinity();
 	for (const auto& place : spheres.places) smallest = std::min(smallest, place.radius);
-	return 0.3 * smallest;
+	return HEXMEMBRANE_LIST_SKIN_DEFAULT * smallest;
 }
 
 // Made beside what is there, and put in its place when nothing can be refused any more.

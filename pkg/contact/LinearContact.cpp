@@ -51,7 +51,7 @@ void LinearMat::check() const
 		refuseBoth("LinearMat.emod", emod);
 		refuseBoth("LinearMat.kratio", kratio);
 	}
-	hexmembrane::requireNonNegative("LinearMat.rollingFriction", rollingFriction, "1");
+	hexmembrane::requireIn(hexmembrane::shared::rolling_friction, "LinearMat.rollingFriction", rollingFriction, "1");
 	requireStrength("LinearMat.cbTensile", cbTensile);
 	requireStrength("LinearMat.cbShear", cbShear);
 }
@@ -78,7 +78,7 @@ Real LinearMat::getFriction() const { return math::tan(frictionAngle); }
 
 void LinearMat::setFriction(Real coefficient)
 {
-	hexmembrane::requireNonNegative("LinearMat.friction", coefficient, "1");
+	hexmembrane::requireIn(hexmembrane::shared::friction, "LinearMat.friction", coefficient, "1");
 	frictionAngle = math::atan(coefficient);
 }
 
@@ -99,7 +99,7 @@ void LinearMat::requireComplete() const
 		hexmembrane::requirePositive("LinearMat.kratio", kratio, "1");
 	else
 		hexmembrane::requireNonNegative("LinearMat.ks", ks, "N/m");
-	hexmembrane::requireNonNegative("LinearMat.friction", getFriction(), "1");
+	hexmembrane::requireIn(hexmembrane::shared::friction, "LinearMat.friction", getFriction(), "1");
 }
 
 hexmembrane::ContactMaterial LinearMat::contactMaterial() const { return {kn, ks, emod, kratio, getFriction(), rollingFriction}; }

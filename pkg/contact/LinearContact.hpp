@@ -3,6 +3,7 @@
 
 #include <core/Dispatching.hpp>
 #include "kernels/contact/ContactMaterial.hpp"
+#include "SharedValues.hpp"
 #include <pkg/common/ElastMat.hpp>
 #include <pkg/dem/FrictPhys.hpp>
 #include <pkg/dem/ScGeom.hpp>
@@ -34,7 +35,7 @@ public:
 		((Real,ks,NaN,Attr::triggerPostLoad,"Shear stiffness of the body's spring [N/m], >= 0."))
 		((Real,emod,NaN,Attr::triggerPostLoad,"Effective modulus $E^*$ of contacts [Pa], > 0 (PFC: emod of the deformability method)."))
 		((Real,kratio,NaN,Attr::triggerPostLoad,"$k^*=k_n/k_s$ [-], > 0 (PFC: kratio)."))
-		((Real,rollingFriction,0,Attr::triggerPostLoad,"Rolling friction coefficient $\\mu_r$ [-], >= 0 (PFC: rr_fric). The contact has the smaller one of its two bodies."))
+		((Real,rollingFriction,HEXMEMBRANE_ROLLING_FRICTION_DEFAULT,Attr::triggerPostLoad,"Rolling friction coefficient $\\mu_r$ [-], " HEXMEMBRANE_ROLLING_FRICTION_RANGE " (PFC: rr_fric). The contact has the smaller one of its two bodies."))
 		((Real,cbTensile,0,Attr::triggerPostLoad,"Tensile strength of a contact bond [N], >= 0, may be inf (PFC: cb_tenf). The contact has the smaller one; 0: no bond."))
 		((Real,cbShear,0,Attr::triggerPostLoad,"Shear strength of a contact bond [N], >= 0, may be inf (PFC: cb_shearf). The contact has the smaller one; 0: no bond."))
 		,

@@ -16,7 +16,7 @@ void SoilStressServo::prepare()
 		                    "either drive=PlatenDrive(...) or pressure=MembranePressure(...)");
 	if (drive && beside) hexmembrane::reject("SoilStressServo.beside", string("given"), "a platen's drive has none", "leave it out, or give pressure");
 	hexmembrane::requirePositive("SoilStressServo.stress", stress, "Pa");
-	hexmembrane::requirePositive("SoilStressServo.tolerance", tolerance, "(no unit)");
+	hexmembrane::requireIn(hexmembrane::shared::servo_tolerance, "SoilStressServo.tolerance", tolerance, "(no unit)");
 	if (!math::isnan(timeLimit)) hexmembrane::requirePositive("SoilStressServo.timeLimit", timeLimit, "s");
 	if (!(maxFactor > 1) || !math::isfinite(maxFactor))
 		hexmembrane::reject("SoilStressServo.maxFactor", maxFactor, "leaves no room for corrections", "a number above 1");

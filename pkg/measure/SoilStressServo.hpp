@@ -6,6 +6,7 @@
 #include "boundary/PlatenDrive.hpp"
 #include "membrane/MembranePressure.hpp"
 #include "membrane/MembraneRadialServo.hpp"
+#include "SharedValues.hpp"
 
 namespace yade {
 
@@ -41,7 +42,7 @@ private:
 		((Real,stress,NaN,,"Stress that the soil is to have [Pa], compression positive, > 0. Required."))
 		((Real,timeConstant,NaN,,"Time constant $T$ [s], two time steps at least. Required. 10 times $d\\sqrt{\\rho/\\sigma}$ is slow and safe."))
 		((Real,maxFactor,1.5,,"Largest factor, and the inverse of the smallest [-]; above 1."))
-		((Real,tolerance,0.01,,"Relative error of the soil's stress below which the loop counts as settled [-], > 0."))
+		((Real,tolerance,HEXMEMBRANE_SERVO_TOLERANCE_DEFAULT,,"Relative error of the soil's stress below which the loop counts as settled [-], " HEXMEMBRANE_SERVO_TOLERANCE_RANGE "."))
 		((Real,timeLimit,NaN,,"Time after a change of :yref:`stress<SoilStressServo.stress>` [s] within which it must have settled once, else the run stops with an error; NaN: none."))
 		((Real,factor,1,Attr::readonly,"Present factor $f$ [-]."))
 		((Real,measured,NaN,Attr::readonly,"The soil's stress at the last correction [Pa], compression positive."))

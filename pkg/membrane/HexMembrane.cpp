@@ -24,15 +24,14 @@ namespace {
 
 bool innerFromName(const string& surface)
 {
-	if (surface != "inner" && surface != "centre") hexmembrane::reject("HexMembrane: surface", "'" + surface + "'", "unknown", "'inner' or 'centre'");
+	hexmembrane::requireOneOf(hexmembrane::shared::pressure_surface, "HexMembrane: surface", surface);
 	return surface == "inner";
 }
 
 hexmembrane::Placement placementFromName(const string& placement)
 {
-	if (placement == "outside") return hexmembrane::Placement::outside;
-	if (placement == "centred") return hexmembrane::Placement::centred;
-	hexmembrane::reject("HexMembrane.placement", "'" + placement + "'", "unknown", "'outside' or 'centred'");
+	hexmembrane::requireOneOf(hexmembrane::shared::placement, "HexMembrane.placement", placement);
+	return placement == "outside" ? hexmembrane::Placement::outside : hexmembrane::Placement::centred;
 }
 
 } // namespace

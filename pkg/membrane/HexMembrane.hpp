@@ -9,6 +9,7 @@
 #include "kernels/membrane/HexLattice.hpp"
 #include "kernels/membrane/PaddedRings.hpp"
 #include "kernels/membrane/SurfaceMeasure.hpp"
+#include "SharedValues.hpp"
 
 namespace yade {
 
@@ -85,9 +86,9 @@ private:
 		((Real,specimenHeight,NaN,,"Height of the specimen [m]. Required."))
 		((Real,particleRadius,NaN,,"Wanted radius $R$ of the membrane's spheres [m]. Required. See :yref:`sphereRadius<HexMembrane.sphereRadius>` for the one that closes the ring."))
 		((Vector3r,origin,Vector3r::Zero(),,"Centre of the specimen's lower end [m]; the axis points along z."))
-		((string,placement,"outside",,"'outside': the membrane's inner surface touches the specimen, the sphere radius is fitted to it. 'centred': sphere centres on the specimen's surface (the source study), the radius is kept and the ring's follows, $R/\\sin(\\pi/n)$."))
-		((int,oRingRows,2,,"Rows beyond each end of the specimen (group 1) [-]."))
-		((int,platenRows,2,,"Rows at each end of the specimen, beside the platens (group 2) [-]."))
+		((string,placement,HEXMEMBRANE_PLACEMENT_DEFAULT,,"'outside': the membrane's inner surface touches the specimen, the sphere radius is fitted to it. 'centred': sphere centres on the specimen's surface (the source study), the radius is kept and the ring's follows, $R/\\sin(\\pi/n)$."))
+		((int,oRingRows,HEXMEMBRANE_O_RING_ROWS_DEFAULT,,"Rows beyond each end of the specimen (group 1) [-], " HEXMEMBRANE_O_RING_ROWS_RANGE "."))
+		((int,platenRows,HEXMEMBRANE_PLATEN_ROWS_DEFAULT,,"Rows at each end of the specimen, beside the platens (group 2) [-], " HEXMEMBRANE_PLATEN_ROWS_RANGE "."))
 		((Real,smallestGrain,NaN,,"Radius of the smallest grain $r$ [m]. When given, $R\\leq 3/(2\\sqrt 3-3)\\,r$ is required (Eq. 1: no grain through a gap of three touching spheres)."))
 		((bool,allowCoarse,false,,"Turn a violation of Eq. 1 into a warning."))
 		((bool,rotations,false,,"Leave the spheres free to rotate. Off: their spins are blocked, as central bonds ($k_s=0$) and a frictionless surface need none. Bonds with $k_s>0$ require it."))

@@ -21,7 +21,7 @@ void MembraneORings::prepare()
 {
 	if (!membrane) throw std::runtime_error("MembraneORings.membrane = None: no membrane to act on; fix: MembraneORings(membrane=HexMembrane(...))");
 	membrane->requireGenerated("MembraneORings");
-	if (mode != "fixed" && mode != "platens") hexmembrane::reject("MembraneORings.mode", "'" + mode + "'", "unknown", "'fixed' or 'platens'");
+	hexmembrane::requireOneOf(hexmembrane::shared::o_ring_mode, "MembraneORings.mode", mode);
 	if (mode == "fixed") return;
 	platen(bottomPlaten, "bottomPlaten");
 	platen(topPlaten, "topPlaten");

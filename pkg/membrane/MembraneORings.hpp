@@ -4,6 +4,7 @@
 #include "HexMembrane.hpp"
 
 #include "compact/Stepped.hpp"
+#include "SharedValues.hpp"
 
 #include <core/GlobalEngine.hpp>
 
@@ -34,7 +35,7 @@ private:
 		"Errors: ``ValueError`` for an unknown mode, ``RuntimeError`` for a membrane not generated, a platen that is not there, a place behind NewtonIntegrator.\n\n"
 		"Example::\n\n\tMembraneORings(membrane=m,mode='platens',bottomPlaten=lower,topPlaten=upper)",
 		((shared_ptr<HexMembrane>,membrane,,,"The membrane. Required."))
-		((string,mode,"fixed",,"'fixed' or 'platens'."))
+		((string,mode,HEXMEMBRANE_O_RING_MODE_DEFAULT,,"'fixed' or 'platens'."))
 		((Body::id_t,bottomPlaten,-1,,"Id of the body that the lower rows ride on (mode 'platens')."))
 		((Body::id_t,topPlaten,-1,,"Id of the body that the upper rows ride on (mode 'platens')."))
 		((shared_ptr<WorkMeter>,meter,new WorkMeter,(Attr::readonly|Attr::hidden),"Work of the grip."))

@@ -56,7 +56,7 @@ void MembranePressure::prepare()
 	const bool sameOffset = builtOffset == surfaceOffset || (math::isnan(builtOffset) && math::isnan(surfaceOffset));
 	if (!vertexIds.empty() && builtFor == membrane.get() && builtSurface == surface && sameOffset && builtIds == ids && builtTriangles == triangles) return;
 
-	if (surface != "inner" && surface != "centre") hexmembrane::reject("MembranePressure.surface", "'" + surface + "'", "unknown", "'inner' or 'centre'");
+	hexmembrane::requireOneOf(hexmembrane::shared::pressure_surface, "MembranePressure.surface", surface);
 	const bool ofMesh = !ids.empty() || !triangles.empty();
 	if (static_cast<bool>(membrane) == ofMesh)
 		hexmembrane::reject("MembranePressure.membrane", string(membrane ? "given together with ids or triangles" : "None"),

@@ -8,6 +8,7 @@
 
 #include "kernels/membrane/PressureForce.hpp"
 #include "kernels/membrane/TubePressure.hpp"
+#include "SharedValues.hpp"
 
 #include <core/GlobalEngine.hpp>
 
@@ -70,7 +71,7 @@ private:
 		((vector<Body::id_t>,ids,,,"Bodies that are the vertices of a mesh of your own."))
 		((vector<Vector3i>,triangles,,,"Triangles of that mesh as indices into ids, counter-clockwise seen from the side of the pressure."))
 		((Real,pressure,NaN,,"Pressure [Pa], positive inwards; may be changed at any time. Required."))
-		((string,surface,"inner",,"'inner' or 'centre', see above."))
+		((string,surface,HEXMEMBRANE_PRESSURE_SURFACE_DEFAULT,,"'inner' or 'centre', see above."))
 		((Real,surfaceOffset,NaN,,"Distance [m] of the inner surface from the centres; NaN: the membrane's sphere radius. Required for 'inner' on a mesh of your own."))
 		((Real,timeConstant,std::numeric_limits<Real>::infinity(),,"Time constant $T$ of the closed loop [s], two time steps at least; inf: open loop."))
 		((Real,maxFactor,1.5,,"Largest factor that the closed loop may reach, and the inverse of the smallest [-]; above 1."))

@@ -12,9 +12,8 @@ namespace {
 
 hexmembrane::AreaRule areaRuleFromName(const string& name)
 {
-	if (name == "tributary") return hexmembrane::AreaRule::tributary;
-	if (name == "cube") return hexmembrane::AreaRule::cube;
-	hexmembrane::reject("MembraneRadialServo.areaRule", "'" + name + "'", "unknown", "'tributary' or 'cube'");
+	hexmembrane::requireOneOf(hexmembrane::shared::area_rule, "MembraneRadialServo.areaRule", name);
+	return name == "cube" ? hexmembrane::AreaRule::cube : hexmembrane::AreaRule::tributary;
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 #include "compact/Stepped.hpp"
 #include "kernels/membrane/PaddedRings.hpp"
 #include "kernels/membrane/RadialForce.hpp"
+#include "SharedValues.hpp"
 
 #include <core/GlobalEngine.hpp>
 
@@ -42,7 +43,7 @@ private:
 		"Example::\n\n\tMembraneRadialServo(membrane=m,pressure=100e3)",
 		((shared_ptr<HexMembrane>,membrane,,,"The membrane. Required."))
 		((Real,pressure,NaN,,"Pressure $\\sigma_3$ [Pa], positive inwards; may be changed at any time. Required."))
-		((string,areaRule,"tributary",,"'tributary' or 'cube', see above."))
+		((string,areaRule,HEXMEMBRANE_AREA_RULE_DEFAULT,,"'tributary' or 'cube', see above."))
 		((Real,timeConstant,std::numeric_limits<Real>::infinity(),,"Time constant $T$ of the closed loop [s], two time steps at least; inf: open loop."))
 		((Real,maxFactor,2,,"Largest factor $f$ that the closed loop may reach [-]."))
 		((Real,factor,1,Attr::readonly,"Present factor $f$ [-]."))

@@ -24,7 +24,7 @@ const CylinderPacking& CylinderPacking::stressed() const
 void CylinderPacking::generate()
 {
 	for (int axis = 0; axis < 3; ++axis) hexmembrane::requireFinite("CylinderPacking.origin", static_cast<double>(origin[axis]), "m");
-	if (seed < 0) hexmembrane::reject("CylinderPacking.seed", static_cast<double>(seed), "must not be negative", "0 or more");
+	hexmembrane::requireIn(hexmembrane::shared::packing_seed, "CylinderPacking.seed", static_cast<double>(seed), "1");
 
 	if (stress != 0) hexmembrane::requirePositive("CylinderPacking.stress", static_cast<double>(stress), "Pa (0: no stress)");
 

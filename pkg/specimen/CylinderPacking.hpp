@@ -1,6 +1,8 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include "SharedValues.hpp"
+
 #include <lib/serialization/Serializable.hpp>
 
 namespace yade {
@@ -51,14 +53,14 @@ public:
 		((Vector3r,origin,Vector3r::Zero(),,"Centre of the cylinder's bottom face [m]."))
 		((vector<Real>,radii,,,"Radii of the spheres [m], in any order. Required. With a porosity, only their proportions count."))
 		((Real,porosity,NaN,,"Porosity wanted, 0 to 1 [-]: all radii are multiplied by one factor, :yref:`scale<CylinderPacking.scale>`, to meet it exactly. NaN: radii are kept as they are; with a stress, which needs a porosity, the packing's own where there is no friction."))
-		((long,seed,1,,"Seed of the random numbers [-], >= 0."))
+		((long,seed,HEXMEMBRANE_PACKING_SEED_DEFAULT,,"Seed of the random numbers [-], " HEXMEMBRANE_PACKING_SEED_RANGE "."))
 		((Real,tolerance,1e-4,,"Room left round touching spheres over the mean radius [-], in (0, 0.01]. Smaller is slower in dense packings."))
 		((int,shakes,8,,"How often a jammed packing is loosened, shaken and grown again before it is given up [-], >= 0."))
 		((Real,stress,0,,"Mean pressure on the walls wanted [Pa], compression positive, at most 0.01 young. 0: a packing without contacts."))
 		((Real,young,NaN,,"Contact modulus [Pa], required with a stress: kn = 2 young r1 r2/(r1+r2) between grains, young r at a wall (as YADE's FrictMat has it with equal moduli)."))
-		((Real,stiffnessRatio,3,,"kn/ks of the contacts [-], >= 1."))
+		((Real,stiffnessRatio,HEXMEMBRANE_STIFFNESS_RATIO_DEFAULT,,"kn/ks of the contacts [-], " HEXMEMBRANE_STIFFNESS_RATIO_RANGE "."))
 		((Real,friction,NaN,,"Coefficient of friction between the grains of the finished packing [-], required with a stress. The walls are smooth."))
-		((Real,rollingFriction,0,,"Coefficient of rolling friction $\\mu_r$ between the grains of the finished packing [-], >= 0: moment at most $\\mu_r r_1 r_2/(r_1+r_2) F_n$. With it looser packings hold."))
+		((Real,rollingFriction,HEXMEMBRANE_ROLLING_FRICTION_DEFAULT,,"Coefficient of rolling friction $\\mu_r$ between the grains of the finished packing [-], " HEXMEMBRANE_ROLLING_FRICTION_RANGE ": moment at most $\\mu_r r_1 r_2/(r_1+r_2) F_n$. With it looser packings hold."))
 		((Real,porosityTolerance,1e-3,,"By how much the porosity of a packing under stress may differ from the wanted one [-], in (0, 0.1)."))
 		((vector<Vector3r>,packedCentres,,Attr::hidden,"See centres."))
 		((vector<Real>,packedRadii,,Attr::hidden,"See sizes."))

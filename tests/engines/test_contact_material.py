@@ -152,7 +152,7 @@ BAD = [
 	(dict(kratio=0), "LinearMat.kratio"),
 	(dict(kn=1e5), "LinearMat.emod = 1e+08: stiffness is given twice"),
 	(dict(ks=1e5), "stiffness is given twice"),
-	(dict(friction=-0.1), "LinearMat.friction = -0.1: must not be negative"),
+	(dict(friction=-0.1), "LinearMat.friction = -0.1: is out of range"),
 	(dict(friction=math.nan), "LinearMat.friction"),
 	(dict(frictionAngle=0.4), "friction is given twice"),
 	(dict(rollingFriction=-1), "LinearMat.rollingFriction"),

@@ -236,6 +236,21 @@ def test_missingAndErasedBodies(O, tier):
 		O.step()
 
 
+def test_aPlatenThatIsTurnedIsRefused(O, tier):
+	"""Tilted before the first step it keeps its tilt; turned between two steps it is an error, for the work of that would be booked nowhere."""
+	springs()
+	bystander()
+	top = topPlaten(O, 0.1)
+	tilt = Quaternion((1, 0, 0), 0.03)
+	O.bodies[top].state.ori = tilt
+	driven(O, tier, platen=top, **GOOD)
+	run(50)
+	assert abs((O.bodies[top].state.ori.conjugate() * tilt).toAxisAngle()[1]) < 1e-14
+	O.bodies[top].state.ori = Quaternion((1, 0, 0), 0.03 + 1e-6)
+	with pytest.raises(RuntimeError, match=f"PlatenDrive.platen = {top}: the platen was turned by 1e-06 rad before iteration .*; fix: tilt it before"):
+		run(2)
+
+
 def test_platenInAClumpIsRefused(O, tier):
 	springs()
 	top = topPlaten(O, 0.1)

@@ -33,6 +33,35 @@ def test_aPlatenNeedsItsFunctors(O, missing, says):
 	stepped(O, drive)
 
 
+@pytest.mark.parametrize("missing, says", [("bound", "no bound functor for a CylinderWall"), ("geometry", "no geometry functor for a CylinderWall")])
+def test_aWallNeedsItsFunctors(O, missing, says):
+	springs()
+	wall = yade.Body()
+	wall.shape, wall.material, wall.dynamic = yade.CylinderWall(radius=0.02, height=0.04), O.materials[0], False
+	servo = yade.RadialWallServo(wall=O.bodies.append(wall), stress=1e5, height=0.04, maxVelocity=1e-3)
+	whole = contactEngines()
+	whole[0].boundDispatcher.functors += [yade.Bo1_CylinderWall_Aabb()] if missing == "geometry" else []
+	whole[1].geomDispatcher.functors += [yade.Ig2_CylinderWall_Sphere_ScGeom()] if missing == "bound" else []
+	O.engines = [yade.ForceResetter(), servo, *whole, yade.NewtonIntegrator()]
+	O.dt = 1e-7
+	with pytest.raises(RuntimeError, match="RadialWallServo: .*" + says + ".*; fix: add"):
+		O.step()
+
+
+def test_whoReadsContactsThatAreNotThereIsTold(O, capfd, tmp_path):
+	springs()
+	pair(1e-3, 1e-3, 1e-6)
+	O.engines = [*engines("compact"), yade.VTKRecorder(fileName=str(tmp_path / "frame"), recorders=["spheres"], iterPeriod=1000)]
+	O.engines[1].exportPeriod = 1
+	O.dt = 1e-9
+	O.step()
+	assert "VTKRecorder" not in capfd.readouterr().err
+	O.engines[1].exportPeriod = 0
+	O.step()
+	O.step()
+	assert capfd.readouterr().err.count("contacts are not in O.interactions, which VTKRecorder reads; fix: CompactLoop.exportPeriod = 1") == 1
+
+
 def test_aMembraneNeedsTheCollidersMask(O):
 	bonds = MembraneBonds(membrane=makeMembrane(mask=3), kn=1e4)
 	with pytest.raises(RuntimeError, match="MembraneBonds: .*collide with each other; fix: Collider.avoidSelfInteractionMask"):

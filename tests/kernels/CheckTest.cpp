@@ -3,6 +3,7 @@
 
 #include "base/NamedFields.hpp"
 #include "kernels/base/Check.hpp"
+#include "kernels/base/Range.hpp"
 
 #include <limits>
 
@@ -31,6 +32,25 @@ std::string thrown(const Call& call)
 }
 
 } // namespace
+
+TEST(Check, aRangeHoldsItsClosedEndsOnly)
+{
+	const Range range{0, false, 1, true, ">= 0, < 1"};
+	EXPECT_EQ(thrown([&] { requireIn(range, "damping", 0, "1"); }), "nothing");
+	EXPECT_EQ(thrown([&] { requireIn(range, "damping", 0.999, "1"); }), "nothing");
+	EXPECT_EQ(thrown([&] { requireIn(range, "damping", 1, "1"); }), "FieldError damping = 1: is out of range; fix: give a number >= 0, < 1 in 1");
+	EXPECT_EQ(thrown([&] { requireIn(range, "damping", -1e-9, "1"); }), "FieldError damping = -1e-09: is out of range; fix: give a number >= 0, < 1 in 1");
+	EXPECT_EQ(thrown([&] { requireIn(range, "damping", missing, "1"); }), "FieldError damping = nan: not given or not a number; fix: give a number in 1");
+	EXPECT_EQ(thrown([&] { requireIn({0, true, Range::unlimited, false, "> 0"}, "skin", inf, "m"); }),
+	          "FieldError skin = inf: not finite; fix: give a finite number in m");
+}
+
+TEST(Check, choices)
+{
+	const Choices choices{{"inner", "centre"}, "'inner' or 'centre'"};
+	EXPECT_EQ(thrown([&] { requireOneOf(choices, "surface", "centre"); }), "nothing");
+	EXPECT_EQ(thrown([&] { requireOneOf(choices, "surface", ""); }), "FieldError surface = '': unknown; fix: 'inner' or 'centre'");
+}
 
 TEST(Check, aComplaintHasOneForm)
 {

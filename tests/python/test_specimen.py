@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The cylinder that the grains are packed into."""
 
+import math
+import pathlib
+
 import pytest
 from hexmembrane.configuration import Config, ConfigError
 from hexmembrane.scene import specimen
@@ -32,3 +35,17 @@ def test_soilRadiusIsTheMembranesInnerRadius(O, particleRadius):
 def test_tooCoarseToCloseARing(particleRadius):
 	with pytest.raises(ConfigError, match="membrane.particleRadius = .*too coarse, a ring would have [05] spheres; fix: at most 0.01 m"):
 		specimen.soilRadius(centred(particleRadius))
+
+
+def frictionless(**specimen):
+	here = pathlib.Path(__file__).resolve().parents[2] / "examples" / "data" / "toyoura.csv"
+	keys = {"radius": 0.01, "height": 0.02, "gradation": str(here), "grains": 200, "friction": 0, "stress": 5e3, **specimen}
+	return Config.of({"specimen": keys, "consolidation": {"pressure": 1e5}})
+
+
+def test_withoutFrictionThePorosityIsThePackings(O):
+	"""Smooth grains under a stress have one porosity; without the key it is taken as it comes, with it a wrong one is refused."""
+	packing = specimen.make(frictionless(), lambda line: None)
+	assert len(packing) == 200 and 0.36 < packing.porosity < 0.46 and not math.isclose(packing.porosity, 0.40, abs_tol=1e-3)
+	with pytest.raises(RuntimeError, match="porosity = 0.5: grains without friction have one porosity at this stress.*; fix: "):
+		specimen.make(frictionless(porosity=0.5), lambda line: None)

@@ -3,6 +3,7 @@
 
 #include "kernels/base/Check.hpp"
 #include "kernels/base/Simd.hpp"
+#include "SharedValues.hpp"
 
 #include <omp.h>
 
@@ -15,7 +16,7 @@ namespace hexmembrane {
 
 double bendingSpring(double plateStiffness, double spacing)
 {
-	requireNonNegative("stiffness", plateStiffness, "N m");
+	requireIn(shared::plate_stiffness, "stiffness", plateStiffness, "N m");
 	requirePositive("spacing", spacing, "m");
 	return 8 * std::sqrt(3.) * plateStiffness / (spacing * spacing);
 }

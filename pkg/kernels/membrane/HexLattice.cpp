@@ -17,8 +17,8 @@ void check(const HexLatticeSpec& s)
 	requirePositive("specimenRadius", s.specimenRadius, "m");
 	requirePositive("specimenHeight", s.specimenHeight, "m");
 	requirePositive("particleRadius", s.particleRadius, "m");
-	if (s.oRingRows < 0) reject("oRingRows", s.oRingRows, "a number of rows cannot be negative", "0 or more (2 in the source study)");
-	if (s.platenRows < 0) reject("platenRows", s.platenRows, "a number of rows cannot be negative", "0 or more");
+	requireIn(shared::o_ring_rows, "oRingRows", s.oRingRows, "rows (2 in the source study)");
+	requireIn(shared::platen_rows, "platenRows", s.platenRows, "rows");
 }
 
 /// Number of spheres a ring and the radii that follow; see the class comment.

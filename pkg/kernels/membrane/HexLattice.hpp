@@ -3,6 +3,7 @@
 
 #include "kernels/membrane/HexStencil.hpp"
 #include "kernels/base/Vec3.hpp"
+#include "SharedValues.hpp"
 
 #include <array>
 #include <vector>
@@ -21,8 +22,8 @@ struct HexLatticeSpec {
 	double specimenHeight; ///< > 0
 	double particleRadius; ///< > 0; see HexLattice::sphereRadius for what becomes of it
 	Placement placement = Placement::outside;
-	int oRingRows = 2;  ///< rows beyond each end of the specimen (group 1), >= 0
-	int platenRows = 2; ///< rows at each platen inside the specimen's ends (group 2), >= 0
+	int oRingRows = HEXMEMBRANE_O_RING_ROWS_DEFAULT;  ///< rows beyond each end of the specimen (group 1)
+	int platenRows = HEXMEMBRANE_PLATEN_ROWS_DEFAULT; ///< rows at each platen inside the specimen's ends (group 2)
 };
 
 /// A hexagonal membrane: rings of touching spheres round the z axis, every other ring turned by half a spacing. The specimen stands on z = 0.

@@ -2,6 +2,7 @@
 #include "kernels/membrane/LatticeConstants.hpp"
 
 #include "kernels/base/Check.hpp"
+#include "SharedValues.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +32,7 @@ BondStiffness bondsFromSheet(const SheetConstants& s)
 	requireFinite("poisson", s.poisson, "1");
 	// a third in binary is a rounding away from 1/3: ks = 0 must be reachable
 	const double third = 1. / 3, eps = 1e-12;
-	if (s.poisson < 0 || s.poisson > third + eps)
+	if (!shared::lattice_poisson.holds(s.poisson))
 		reject("poisson", s.poisson, "a hexagonal lattice of springs reaches 0 to 1/3 only (rubber's 0.5 cannot be had)",
 		       "1/3 for central springs (ks = 0), which is nearest to rubber");
 	const double kn = s.stretch / (std::sqrt(3.) * (1 - s.poisson));

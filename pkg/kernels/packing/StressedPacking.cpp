@@ -2,6 +2,7 @@
 #include "kernels/packing/StressedPacking.hpp"
 
 #include "kernels/base/Check.hpp"
+#include "SharedValues.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,12 +29,11 @@ void check(const StressedPackingSpec& s)
 {
 	requirePositive("stress", s.stress, "Pa");
 	requirePositive("modulus", s.law.modulus, "Pa");
-	requirePositive("stiffnessRatio", s.law.stiffnessRatio, "1 (kn/ks)");
-	requireNonNegative("friction", s.law.friction, "1 (tan of the angle)");
-	requireNonNegative("rollingFriction", s.law.rollingFriction, "1");
+	requireIn(shared::stiffness_ratio, "stiffnessRatio", s.law.stiffnessRatio, "1 (kn/ks)");
+	requireIn(shared::friction, "friction", s.law.friction, "1 (tan of the angle)");
+	requireIn(shared::rolling_friction, "rollingFriction", s.law.rollingFriction, "1");
 	requireNonNegative("damping", s.law.damping, "1");
 	requirePositive("porosityTolerance", s.porosityTolerance, "1");
-	if (s.law.stiffnessRatio < 1) reject("stiffnessRatio", s.law.stiffnessRatio, "springs stiffer in shear than along the normal", "kn/ks >= 1");
 	if (s.law.damping >= 1) reject("damping", s.law.damping, "would stop everything", "below 1, 0.5 by default");
 	if (s.porosityTolerance >= 0.1) reject("porosityTolerance", s.porosityTolerance, "no tolerance of a porosity", "e.g. 0.001");
 	if (s.stress > 1e-2 * s.law.modulus)

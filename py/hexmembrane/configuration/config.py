@@ -8,7 +8,7 @@ import dataclasses
 import pathlib
 from typing import Optional
 
-from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, paths, section, toDict
+from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, paths, section, shared, toDict
 
 #: Keys of the specimen that are files.
 PATHS = ("packing", "gradation")
@@ -30,8 +30,10 @@ class Specimen:
 	cutBelow: Optional[float] = key(None, "leave out grains with a diameter below this, before scaling", "m", low=0)
 	cutAbove: Optional[float] = key(None, "leave out grains with a diameter above this, before scaling", "m", low=0, openLow=True)
 	grains: Optional[int] = key(None, "number of grains wished; none: follows from porosity, volume and scale", "", low=20, high=1000000)
-	porosity: float = key(0.40, "porosity of the packing, before consolidation", "", low=0.3, high=0.6)
-	seed: int = key(1, "seed of the packing's random numbers", "", low=0, high=2**31 - 1)
+	porosity: float = key(
+		0.40, "porosity of the packing, before consolidation; grains without friction under a stress have their own, leave the key out", "", low=0.3, high=0.6
+	)
+	seed: int = shared("packing_seed", "seed of the packing's random numbers", high=2**31 - 1)
 	density: float = key(2650.0, "density of the grains", "kg/m3", low=0, openLow=True)
 	stress: Optional[float] = key(
 		None,
@@ -40,17 +42,16 @@ class Specimen:
 		low=0,
 		openLow=True,
 	)
-	friction: float = key(
-		0.5,
+	friction: float = shared(
+		"friction",
 		"coefficient of friction mu between grains, tan of the angle, Fs <= mu Fn: in shear, in consolidation unless that has its own, "
 		"and in a packing made under stress",
-		"",
-		low=0,
+		default=0.5,
 		high=5,
 	)
-	rollingFriction: float = key(0.0, "coefficient of rolling friction mu_r between grains, moment <= mu_r R1 R2/(R1 + R2) Fn", "", low=0, high=5)
-	packingRollingFriction: float = key(
-		0.0, "coefficient of rolling friction while a packing is made under stress; looser ones need it, it may be rollingFriction's value", "", low=0, high=5
+	rollingFriction: float = shared("rolling_friction", "coefficient of rolling friction mu_r between grains, moment <= mu_r R1 R2/(R1 + R2) Fn", high=5)
+	packingRollingFriction: float = shared(
+		"rolling_friction", "coefficient of rolling friction while a packing is made under stress; looser ones need it, it may be rollingFriction's value", high=5
 	)
 	emod: float = key(
 		4e7,
@@ -60,7 +61,7 @@ class Specimen:
 		low=0,
 		openLow=True,
 	)
-	kratio: float = key(3.0, "kn/ks of the contacts", "", low=1, high=1000)
+	kratio: float = shared("stiffness_ratio", "kn/ks of the contacts", high=1000)
 	massScaling: bool = key(
 		False,
 		"grains smaller than the largest get its mass times their share of its radius, m = m_max r/r_max: all grains then have the critical step of the "
@@ -88,24 +89,25 @@ class Membrane:
 	sizeRatio: float = key(
 		0.8, "R/r, membrane sphere to smallest grain radius, used without particleRadius; Eq. 1 is its upper limit", "", low=0, openLow=True
 	)
-	placement: str = key(
-		"outside", "inner surface ('outside') or centres ('centred') on the specimen's surface", "", choices=("outside", "centred")
-	)
-	oRingRows: int = key(2, "rows at each end, beyond the specimen, held by the O-rings (group 1)", "", low=1, high=50)
-	platenRows: Optional[int] = key(
-		None, "rows beside each platen, pressed radially (group 2); none: as many as cover the smallest grain, 2 at least", "", low=0, high=50
+	placement: str = shared("placement", "inner surface ('outside') or centres ('centred') on the specimen's surface")
+	oRingRows: int = shared("o_ring_rows", "rows at each end, beyond the specimen, held by the O-rings (group 1)", low=1, high=50)
+	platenRows: Optional[int] = shared(
+		"platen_rows", "rows beside each platen, pressed radially (group 2); none: as many as cover the smallest grain, 2 at least", default=None, high=50
 	)
 	young: float = key(1.0e6, "Young's modulus of the membrane's material", "Pa", low=0, openLow=True)
 	thickness: float = key(
 		3e-4, "thickness of the material; only young * thickness matters, twice pressure * grain radius or more", "m", low=0, openLow=True
 	)
-	poisson: float = key(_CENTRAL, "in-plane Poisson's ratio of the lattice; 1/3 has central forces only", "", low=0, high=0.33333334)
+	poisson: float = shared("lattice_poisson", "in-plane Poisson's ratio of the lattice; 1/3 has central forces only", default=_CENTRAL)
 	density: float = key(1000.0, "density of the membrane's spheres", "kg/m3", low=0, openLow=True)
 	densityScaling: Optional[float] = key(
 		1.0, "factor on the mass of the membrane's spheres, for a longer time step where they set it; none: as much as lets the grains set it", "", low=1
 	)
-	bendingStiffness: Optional[float] = key(
-		None, "bending stiffness D of the sheet, of a plate E t^3/(12 (1 - nu^2)); 0: none; without a value it follows from sag", "N m", low=0
+	bendingStiffness: Optional[float] = shared(
+		"plate_stiffness",
+		"bending stiffness D of the sheet, of a plate E t^3/(12 (1 - nu^2)); 0: none; without a value it follows from sag",
+		"N m",
+		default=None,
 	)
 	sag: float = key(
 		0.015,
@@ -126,13 +128,11 @@ class Membrane:
 		None, "shear force at which such a bond breaks, with poisson below 1/3; none: never", "N", low=0, openLow=True
 	)
 	tensionOnly: bool = key(False, "bonds carry tension only: the sheet wrinkles instead of carrying compression")
-	oRings: str = key("platens", "O-ring rows ride with the platens or stay fixed in space", "", choices=("platens", "fixed"))
-	surface: str = key("inner", "surface on which the pressure acts, inner surface or sphere centres", "", choices=("inner", "centre"))
-	areaRule: str = key(
-		"tributary",
+	oRings: str = shared("o_ring_mode", "O-ring rows ride with the platens or stay fixed in space", default="platens")
+	surface: str = shared("pressure_surface", "surface on which the pressure acts, inner surface or sphere centres")
+	areaRule: str = shared(
+		"area_rule",
 		"area of a particle of group 2: its share of the present inner surface, 2 pi (r - R)/n times the rings' distance, or the cube's (2R)^2",
-		"",
-		choices=("tributary", "cube"),
 	)
 	servoTime: Optional[float] = key(
 		None,
@@ -179,18 +179,15 @@ class Membrane:
 class Wall:
 	"""The rigid cylinder wall of ``boundary: wall``: one radius, moved by a servo that holds the mean radial stress."""
 
-	friction: float = key(0.0, "coefficient of friction on the wall; with grains the lesser of both acts", "", low=0, high=5)
-	damping: float = key(
-		0.2,
+	friction: float = shared("friction", "coefficient of friction on the wall; with grains the lesser of both acts", default=0.0, high=5)
+	damping: float = shared(
+		"servo_damping",
 		"damping ratio of the radial servo, 1: critical for the wall's contacts alone; while the radius grows at v the wall carries "
 		"4 damping K dt v more than its target, K the stiffness of its contacts",
-		"",
-		low=0,
+		default=0.2,
 		high=10,
 	)
-	tolerance: float = key(
-		0.01, "relative error of the radial stress below which the servo has reached its target", "", low=0, high=0.5, openLow=True
-	)
+	tolerance: float = shared("servo_tolerance", "relative error of the radial stress below which the servo has reached its target", high=0.5)
 	maxVelocity: Optional[float] = key(
 		None, "largest velocity of the radius; none: 1e-3 radius/(d sqrt(rho/pressure)), an inertial number of 1e-3", "m/s", low=0, openLow=True
 	)
@@ -201,13 +198,12 @@ class Platens:
 	"""The two rigid end platens."""
 
 	thickness: Optional[float] = key(None, "thickness; none: the membrane's end rows plus twice the largest travel", "m", low=0, openLow=True)
-	friction: float = key(0.3, "coefficient of friction on the platens, no rolling friction; with grains the lesser of both acts", "", low=0, high=5)
-	consolidationFriction: Optional[float] = key(
-		0.0,
+	friction: float = shared("friction", "coefficient of friction on the platens, no rolling friction; with grains the lesser of both acts", default=0.3, high=5)
+	consolidationFriction: Optional[float] = shared(
+		"friction",
 		"the same until the end of consolidation; none: friction; rough platens hold the soil's ends back as the specimen shrinks, and its radial "
 		"stress there is then below the pressure",
-		"",
-		low=0,
+		default=0.0,
 		high=5,
 	)
 
@@ -220,8 +216,8 @@ class Consolidation:
 	rampTime: Optional[float] = key(
 		None, "time over which the pressure rises smoothly; none: 30 d sqrt(rho/pressure), d the mean grain diameter", "s", low=0, openLow=True
 	)
-	friction: Optional[float] = key(
-		None, "coefficient of friction between grains until the end of consolidation; none: specimen.friction; lower: denser", "", low=0, high=5
+	friction: Optional[float] = shared(
+		"friction", "coefficient of friction between grains until the end of consolidation; none: specimen.friction; lower: denser", default=None, high=5
 	)
 	axial: str = key(
 		"soil",
@@ -281,10 +277,10 @@ class Numerics:
 
 	dt: Optional[float] = key(None, "time step; none: safety times the critical one of contacts and membrane, rotations included", "s", low=0, openLow=True)
 	safety: float = key(0.5, "share of the critical time step", "", low=0, high=1, openLow=True)
-	damping: float = key(0.2, "local (Cundall) damping of NewtonIntegrator", "", low=0, high=1, openHigh=True)
+	damping: float = shared("local_damping", "local (Cundall) damping of NewtonIntegrator")
 	verlet: float = key(0.2, "contact detection's skin in the reference tier, as a share of the smallest sphere's radius", "", low=0, high=1)
-	skin: float = key(0.3, "skin of the neighbour lists in the compact tier, as a share of the smallest sphere's radius", "", low=0, high=1, openLow=True)
-	substeps: int = key(100, "steps that the compact tier takes in one YADE iteration at most", "", low=1)
+	skin: float = shared("list_skin", "skin of the neighbour lists in the compact tier, as a share of the smallest sphere's radius", high=1)
+	substeps: int = shared("substeps", "steps that the compact tier takes in one YADE iteration at most")
 	threads: Optional[int] = key(None, "OpenMP threads; none: as YADE was started", "", low=1, high=1024, free=True)
 
 

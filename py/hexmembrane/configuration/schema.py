@@ -6,9 +6,12 @@ that one statement checks the input, writes the resolved configuration and makes
 A section may have a method ``check(path)`` for what concerns several keys at once.
 """
 
+import csv
 import dataclasses
 import difflib
+import functools
 import math
+import pathlib
 import typing
 
 
@@ -55,6 +58,32 @@ class Key:
 def key(default, doc, unit="", **more):
 	"""A dataclass field for one configuration key; ``default=REQUIRED`` makes the key compulsory; ``more``: fields of :class:`Key`."""
 	return dataclasses.field(default=default, metadata={"key": Key(doc, unit, **more)})
+
+
+#: Defaults and ranges that keys have in common with classes of the plugin.
+SHARED = pathlib.Path(__file__).with_name("shared.csv")
+
+
+@functools.lru_cache
+def _sharedRows():
+	lines = [line for line in SHARED.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
+	return {row["name"]: row for row in csv.DictReader(lines)}
+
+
+def shared(name, doc, unit="", **more):
+	"""As :func:`key`, with the default and range of a row of ``shared.csv``, which the plugin's class has too; ``more`` goes before the row.
+
+	``more`` may have ``default``.
+	"""
+	row = _sharedRows()[name]
+	facts = {end: float(row[end]) for end in ("low", "high") if row[end]}
+	facts.update({"openLow" if end == "low" else "openHigh": True for end in ("low", "high") if row["open"] == end})
+	if row["choices"]:
+		facts["choices"] = tuple(row["choices"].split("|"))
+	facts.update(more)
+	if "default" not in facts:
+		facts["default"] = row["default"] if row["choices"] else (float if "." in row["default"] else int)(row["default"])
+	return key(facts.pop("default"), doc, unit, **facts)
 
 
 class _Required:

@@ -80,17 +80,21 @@ def make(config, say):
 	Under ``specimen.stress`` the modulus is such that contacts of equal grains are as stiff as the test's: CylinderPacking's rule is
 	kn = 2 young r1 r2/(r1 + r2), PFC's pi emod min(r1, r2)^2/(r1 + r2), equal with young = pi emod/2.
 
+	Grains without friction have one porosity under that stress: without the key ``specimen.porosity`` it is theirs, with it what is given must be it.
+
 	:returns: a :class:`hexmembrane.scene.packing_file.Packing`.
 	:raises RuntimeError: the porosity is out of reach; the message says what is in reach.
 	"""
 	keys = config.specimen
 	radius = soilRadius(config)
-	stressed = {}
+	stressed, porosity = {}, keys.porosity
 	if keys.stress is not None:
+		if keys.friction == 0 and "specimen.porosity" not in config.given:
+			porosity = math.nan
 		stressed = {"stress": keys.stress, "young": math.pi * keys.emod / 2, "stiffnessRatio": keys.kratio}
 		stressed.update(friction=keys.friction, rollingFriction=keys.packingRollingFriction)
 	generator = yade.CylinderPacking(
-		radius=radius, height=keys.height, radii=radii(keys, radius, keys.height).tolist(), porosity=keys.porosity, seed=keys.seed, **stressed
+		radius=radius, height=keys.height, radii=radii(keys, radius, keys.height).tolist(), porosity=porosity, seed=keys.seed, **stressed
 	)
 	generator.generate()
 	packing = packing_file.Packing.of(generator, gradation=pathlib.Path(keys.gradation).name)
