@@ -8,6 +8,7 @@ import dataclasses
 import pathlib
 from typing import Optional
 
+from hexmembrane.configuration.measure import Measure
 from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, paths, section, shared, toDict
 
 #: Keys of the specimen that are files.
@@ -330,6 +331,7 @@ class Config:
 	shear: Shear = section(Shear, "shearing")
 	numerics: Numerics = section(Numerics, "time step, damping, threads")
 	output: Output = section(Output, "records, VTK, checkpoints")
+	measure: Measure = section(Measure, "measurement inside the specimen in shear")
 
 	@classmethod
 	def of(cls, values, folder="."):
@@ -343,6 +345,7 @@ class Config:
 		config.given = frozenset(paths(values if isinstance(values, dict) else toDict(config)))
 		if config.membrane.placement == "centred" and config.membrane.particleRadius is None:
 			raise ConfigError("membrane.placement", "centred", "the soil's radius then follows from the particle's radius", "give membrane.particleRadius")
+		config.measure.checkWith(config.specimen, config.shear)
 		for name in PATHS:
 			path = getattr(config.specimen, name)
 			if path is not None:

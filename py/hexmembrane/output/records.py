@@ -5,30 +5,11 @@ Every row is written whole and flushed, so that a killed run leaves a readable f
 checkpoint and goes on. Strains count from the start of the row's stage (``stage`` column). Needs no YADE.
 """
 
-import dataclasses
-import math
-import os
-import pathlib
-
-import numpy
-
-
-@dataclasses.dataclass(frozen=True)
-class Column:
-	"""One column; ``doc`` says sign, formula and source; ``optional``: may be nan."""
-
-	name: str
-	unit: str
-	doc: str
-	optional: bool = False
-
-	@property
-	def header(self):
-		return f"{self.name} [{self.unit}]" if self.unit else self.name
-
+from hexmembrane.output import tables
+from hexmembrane.output.tables import Column, Table
 
 COLUMNS = (
-	Column("stage", "", "consolidation or shear"),
+	Column("stage", "", "consolidation or shear", text=True),
 	Column("step", "", "YADE's step, O.iter"),
 	Column("time", "s", "YADE's time, O.time"),
 	Column("axial_strain", "-", "eps1 = (h0 - h)/h0 with h the distance of the platens' faces; compression positive"),
@@ -144,99 +125,19 @@ COLUMNS = (
 	),
 )
 
-_TEXT = ("stage",)
 
-
-class Records:
-	"""records.csv being written.
-
-	:param path: the file.
-	:param keep: bytes to keep of an existing file (a checkpoint's :meth:`position`); None starts anew.
-	:raises ValueError: the existing file is shorter than ``keep`` or has other columns.
-	"""
+class Records(Table):
+	"""records.csv being written; see :class:`hexmembrane.output.tables.Table`."""
 
 	def __init__(self, path, keep=None):
-		self.path = pathlib.Path(path)
-		header = ",".join(column.header for column in COLUMNS) + "\n"
-		if keep is None:
-			self._file = open(self.path, "wb")
-			self._write(header)
-			return
-		size = self.path.stat().st_size if self.path.is_file() else 0
-		if size < keep:
-			raise ValueError(
-				f"records = '{self.path}': has {size} bytes, its checkpoint was taken at {keep}; fix: put the file back or start anew"
-			)
-		self._file = open(self.path, "r+b")
-		if self._file.readline().decode(errors="replace") != header:
-			self._file.close()
-			raise ValueError(f"records = '{self.path}': has other columns than this version writes; fix: start anew in another folder")
-		self._file.truncate(keep)
-		self._file.seek(keep)
-
-	def _write(self, line):
-		self._file.write(line.encode())
-		self._file.flush()
-
-	def append(self, row):
-		"""Write one row, a mapping with exactly the columns' names; values are written so that they read back exactly.
-
-		:raises ValueError: a column is missing or unknown, or a number is not finite (nan is allowed in the optional columns).
-		"""
-		names = [column.name for column in COLUMNS]
-		if set(row) != set(names):
-			odd = sorted(set(row) ^ set(names))
-			raise ValueError(f"records.row = {odd}: missing or unknown columns; fix: give each of COLUMNS once")
-		cells = []
-		for column in COLUMNS:
-			name, value = column.name, row[column.name]
-			if name in _TEXT:
-				cells.append(value)
-				continue
-			if column.optional and math.isnan(value):
-				cells.append("nan")
-				continue
-			if not math.isfinite(value):
-				raise ValueError(f"records.{name} = {value} in step {row['step']}: is not finite; fix: see the state at the last checkpoint")
-			cells.append(repr(int(value)) if float(value).is_integer() and abs(value) < 2**53 else repr(float(value)))
-		self._write(",".join(cells) + "\n")
-
-	def position(self):
-		"""Bytes written so far; they are on the disk when this returns."""
-		os.fsync(self._file.fileno())
-		return self._file.tell()
-
-	def close(self):
-		self._file.close()
-
-	def __enter__(self):
-		return self
-
-	def __exit__(self, *_):
-		self.close()
+		super().__init__(path, COLUMNS, keep, "records")
 
 
 def read(path):
-	"""The records as a dict of column name -> numpy array (``stage``: list of text). A last row cut by a kill is left out.
-
-	:raises ValueError: no records file, or a row with a wrong number of cells.
-	"""
-	lines = pathlib.Path(path).read_text(encoding="utf-8").split("\n")
-	names = [header.split(" [")[0] for header in lines[0].split(",")]
-	if "stage" not in names or "step" not in names:
-		raise ValueError(f"records = '{path}': has no header of records.csv; fix: give the records.csv of a test")
-	rows = [line.split(",") for line in lines[1:-1]]
-	for number, row in enumerate(rows, 2):
-		if len(row) != len(names):
-			raise ValueError(f"records = '{path}', line {number}: has {len(row)} cells for {len(names)} columns; fix: restore the file")
-	table = {}
-	for k, name in enumerate(names):
-		cells = [row[k] for row in rows]
-		table[name] = cells if name in _TEXT else numpy.array([float(cell) for cell in cells])
-	return table
+	"""The records, see :func:`hexmembrane.output.tables.read`."""
+	return tables.read(path, ("stage",), "records")
 
 
 def markdown():
 	"""The table of columns for the documentation."""
-	lines = ["| column | unit | meaning and sign |", "| --- | --- | --- |"]
-	return "\n".join(lines + [f"| `{column.name}` | {column.unit} | {column.doc} |" for column in COLUMNS])
+	return tables.markdown(COLUMNS)
