@@ -223,6 +223,12 @@ def _bootstrap(step, planes, replicates, seed):
 	return {name: (float(a), float(b)) for name, a, b in zip(names, low, high)}, held / replicates
 
 
+def medianDiameter(radii):
+	"""d50 [m]: half of the grains' volume is in smaller ones; ``radii`` [m]."""
+	r = np.sort(np.asarray(radii))
+	return 2 * float(r[np.searchsorted(np.cumsum(r**3), 0.5 * (r**3).sum())])
+
+
 def expectedDips(phi, psi):
 	"""Dips [degrees] of a band by Coulomb, 45 + phi/2, Roscoe, 45 + psi/2, and Arthur, their mean; angles of friction and dilatancy [degrees]."""
 	coulomb, roscoe = 45 + phi / 2, 45 + psi / 2

@@ -83,7 +83,7 @@ class Inside:
 		for name, columns in (("regions", REGIONS), ("profile", PROFILE), ("bands", BANDS)):
 			if self._wanted[name]:
 				self._tables[name] = Table(self.out / f"{name}.csv", columns, places.get(name))
-		self._row, self._before = facts.get("row", -1), facts.get("before", record)
+		self._row, self._before = facts.get("row", -1), facts.get("before") or _strains(record)
 		if self.keys.local:
 			self._local = LocalHistory(scene, _decoded(facts["local"]) if facts else None)
 			self._d50 = bands.medianDiameter(self._local.radii)
@@ -133,7 +133,7 @@ class Inside:
 			state = {"row": number, "step": record["step"], "axial_strain": record["axial_strain"], "increment": increment}
 			state.update(bottom=bottom, top=top, radius=record["mean_radius"])
 			self._fields.add(state, self._local.ids, self._local.radii, self._local.fields)
-		self._before = {name: record[name] for name in ("axial_strain", "volumetric_strain_volume")}
+		self._before = _strains(record)
 		self._arrays()
 
 	def _arrays(self):
@@ -225,6 +225,10 @@ class Inside:
 		for k, height in enumerate(found.middle):
 			row = {"step": record["step"], "axial_strain": record["axial_strain"], "slice": k, "height": float(height)}
 			self._tables["profile"].append({**row, **{name: float(getattr(found, name)[k]) for name in ("radius", "axial", "radial")}})
+
+
+def _strains(record):
+	return {name: record[name] for name in ("axial_strain", "volumetric_strain_volume")}
 
 
 def _encoded(values):

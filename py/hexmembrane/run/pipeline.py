@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A whole test from one configuration: ``run(config, out)``."""
 
+import contextlib
 import pathlib
 
 from yade import O
@@ -124,7 +125,7 @@ def run(config, out, resume=False, until="shear", start=None, quiet=False):
 		if until == "boundary":
 			test.checkpoint("generated")
 			return test
-	with test.records:
+	with test.records, contextlib.closing(test.inside):
 		return _stages(test, until, say)
 
 

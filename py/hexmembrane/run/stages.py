@@ -16,6 +16,7 @@ from hexmembrane.measure import rows
 from hexmembrane.output.frames import Frames
 from hexmembrane.output.records import Records
 from hexmembrane.run import checkpoints
+from hexmembrane.run.inside import Inside
 from hexmembrane.run.progress import Progress
 from hexmembrane.scene import timestep
 from hexmembrane.scene.builder import checkTimeStep
@@ -38,7 +39,8 @@ class TriaxialTest:
 	"""A test whose specimen and lateral boundary are in ``O`` (see :func:`hexmembrane.scene.builder.build`).
 
 	Attributes: ``config``, ``out``, ``quiet`` (see below); ``scene`` and ``grains`` (handles), ``stage`` (name), ``rowCount`` (rows of the stage so
-	far), ``lastRow`` (a dict by column of the records), ``stageStart`` (step and time), ``reference`` (what strains count from), ``records``, ``frames``.
+	far), ``lastRow`` (a dict by column of the records), ``stageStart`` (step and time), ``reference`` (what strains count from), ``records``, ``frames``,
+	``inside`` (what the configuration's ``measure`` asks for).
 
 	:param config: checked configuration.
 	:param out: existing folder for all files.
@@ -57,6 +59,7 @@ class TriaxialTest:
 		self.frames = Frames(self.out, facts.get("frames", ()))
 		self.records = Records(self.out / "records.csv", facts.get("bytes"))
 		self.reference = rows.Reference(**facts["reference"]) if "reference" in facts else rows.Reference.of(self.scene)
+		self.inside = Inside(config, self.out, facts.get("inside"))
 		self.lastRow = facts.get("last")
 		self._earlier = facts.get("elapsed", 0.0)
 		self._clock = time.monotonic()
@@ -109,7 +112,15 @@ class TriaxialTest:
 			)
 		self.records.append(self.lastRow)
 		self.rowCount += 1
+		if self.stage == "shear":
+			self._measureInside()
 		return self.lastRow
+
+	def _measureInside(self):
+		try:
+			self.inside.row(self.scene, self.lastRow, self.rowCount - 1)
+		except (RuntimeError, ValueError) as error:
+			raise StageError(f"measure, in step {O.iter}: {self._torn()}{error}") from None
 
 	def checkpoint(self, name=None):
 		"""Save the state: as ``name``.yade.gz, kept; else as this stage's last checkpoint, uncompressed, which takes a third of the time."""
@@ -124,6 +135,7 @@ class TriaxialTest:
 			"begun": self.stageStart,
 			"bytes": self.records.position(),
 			"frames": self.frames.written,
+			"inside": self.inside.position(),
 			"reference": vars(self.reference),
 			"last": self.lastRow,
 			"elapsed": round(self.elapsed(), 2),
@@ -329,7 +341,7 @@ class TriaxialTest:
 
 	def _frame(self):
 		if self.config.output.vtkEvery:
-			self.frames.write(self.scene, self.grains, self.reference.radius)
+			self.frames.write(self.scene, self.grains, self.reference.radius, self.inside.grainArrays)
 
 	def _checkpointDue(self):
 		every = self.config.output.checkpointEvery
