@@ -79,8 +79,8 @@ class Field:
 		uz, us, rest = uz - up @ (up.T @ uz), us - side @ (side.T @ us), e - still @ (still.T @ e)
 		#: Weighted squares that are left, of displacements and of strains.
 		self.left = np.array([uz @ uz + us @ us, rest @ rest])
-		#: Symmetric part of the strain, planes included, (N,).
-		self.symmetricStrain = still @ (still.T @ e) / root
+		#: Part of the strain that is explained, (N,); 0 where the weight is.
+		self.explainedStrain = np.divide(still @ (still.T @ e), root, out=np.zeros(n), where=root > 0)
 		self._sizes = np.cumsum([up.shape[1], side.shape[1], side.shape[1]])
 		self._steps = np.ascontiguousarray(np.column_stack([up, side[:n], side[n:], uz, us[:n], us[n:]]).T) * root
 		self._slabs = np.ascontiguousarray(np.column_stack([still, rest]).T) * root
@@ -117,7 +117,7 @@ class Search:
 	"""
 
 	def __init__(self, x, u, weights, strain, diameter):
-		self.x, self.u, self.weights, self.strain = x, u, weights, strain
+		self.x, self.u, self.weights, self.strain, self._fields = x, u, weights, strain, {}
 		wide = 2 * float(np.sqrt((x[:, :2] ** 2).sum(axis=1).max()))
 		self.low = np.array([math.radians(DIPS[0]), -math.inf, x[:, 2].min(), math.log(0.5 * diameter)])
 		self.high = np.array([math.radians(DIPS[1]), math.inf, x[:, 2].max(), math.log(max(THICKEST * wide, diameter))])
@@ -129,12 +129,17 @@ class Search:
 
 	def _of(self, x, u, weights, strain):
 		made = Search.__new__(Search)
-		made.__dict__.update(self.__dict__, x=x, u=u, weights=weights, strain=strain)
+		made.__dict__.update(self.__dict__, x=x, u=u, weights=weights, strain=strain, _fields={})
 		return made
 
 	def field(self, planes=()):
-		"""The :class:`Field` with these planes in the model."""
-		return Field((self.x, self.u, self.weights, self.strain), planes)
+		"""The :class:`Field` with these planes in the model; that of the last planes is kept."""
+		name = b"".join(np.asarray(plane).tobytes() for plane in planes)
+		if name not in self._fields:
+			if len(self._fields) > 1:
+				self._fields.pop(next(reversed(self._fields)))  # the first one, mostly without planes, is asked for again and again
+			self._fields[name] = Field((self.x, self.u, self.weights, self.strain), planes)
+		return self._fields[name]
 
 	def isThin(self, plane):
 		"""Whether its thickness is below the search's upper limit."""

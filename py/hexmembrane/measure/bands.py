@@ -10,8 +10,8 @@ Both profiles are those of one shear. The plane is that which leaves the least p
 explain, grains weighted with their volumes: the most likely one for normal noise. The thickness that is told is then that of the slab of uniform shear,
 parallel to the plane, whose displacement fits best: linear across the slab, constant beyond.
 
-The localisation index is the share of the specimen's deviatoric strain that A exp(-6 s^2/t^2) stands for: what bands carry above all that is symmetric.
-Uniform strain and a barrel have about 0. There is a band when the index is INDEX_LIMIT or more. Uses nothing of YADE.
+The localisation index is the share of the specimen's deviatoric strain that A exp(-6 s^2/t^2) stands for: what bands carry above all that is symmetric, 1 at
+most. Uniform strain and a barrel have about 0. There is a band when the index is INDEX_LIMIT or more. Uses nothing of YADE.
 """
 
 import dataclasses
@@ -113,7 +113,7 @@ def find(positions, displacements, volumes, deviatoric, diameter, axis=None, rep
 	return Finding(
 		verdict,
 		tuple(_planeOf(plane, jump, centre) for plane, jump in step.slabs(planes)),
-		sum(step.indices(planes)),
+		min(1.0, sum(step.indices(planes))),
 		step.explained(planes),
 		barrel,
 		*_bootstrap(step, planes, replicates, seed),
@@ -190,7 +190,7 @@ class _Step:
 
 	def symmetricVariation(self):
 		"""Coefficient of variation of the part of the strain that is symmetric about the axis."""
-		fit, weights = self.nothing.symmetricStrain, self.search.weights / self.search.weights.sum()
+		fit, weights = self.nothing.explainedStrain, self.search.weights / self.search.weights.sum()
 		mean = weights @ fit
 		return float(np.sqrt(weights @ (fit - mean) ** 2) / mean)
 
@@ -213,7 +213,7 @@ def _bootstrap(step, planes, replicates, seed):
 		again = step.weighted(step.search.weights * np.bincount(random.integers(count, size=count), minlength=count)[block])
 		found = again.search.together(planes, len(planes), tolerance=0.05, trials=60)
 		held += again.areBands(found) == wanted
-		row = [sum(again.indices(found)), again.explained(found)]
+		row = [min(1.0, sum(again.indices(found))), again.explained(found)]
 		for (plane, _), was in zip(again.slabs(found), planes):
 			turn = math.degrees((plane[1] - was[1] + math.pi) % (2 * math.pi) - math.pi)
 			row += [math.degrees(plane[0]), math.degrees(was[1]) % 360 + turn, math.exp(plane[3])]
