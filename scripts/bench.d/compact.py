@@ -78,7 +78,7 @@ def sheet(packed, rows):
 	bending, contact = (lambda m: yade.MembraneBending(membrane=m, stiffness=5e-5)), (lambda m: yade.MembraneSelfContact(membrane=m))
 	flexible("compact", packed, 0.5e-3, (bending, contact, lambda m: yade.MembraneFacetContact(membrane=m)))
 	_, *extra = O.engines[1].engines[:4]
-	scenes = {"bonds alone": (0, 0, 0), "bending": (1, 0, 0), "self-contact": (0, 1, 0), "facets": (0, 0, 1), "all": (1, 1, 1)}
+	scenes = {"bonds alone": (0, 0, 0), "bending": (1, 0, 0), "self-contact": (0, 1, 0), "bending and self-contact": (1, 1, 0), "facets": (0, 0, 1), "all": (1, 1, 1)}
 	times = {name: [] for name in scenes}
 	O.run(WARM, True)
 	for _ in range(15):

@@ -14,7 +14,7 @@ from yade import O
 
 from hexmembrane.scene import geometry, timestep
 from hexmembrane.scene.lateral_boundary import BoundaryParts, LateralBoundary, Surface, optionalEngine, singleEngine
-from hexmembrane.scene.membrane_loads import endHeights, membraneLoads
+from hexmembrane.scene.membrane_loads import endHeights, endRows, membraneLoads
 
 #: What a sheet holds, by measurement: pressure times grain radius over E t, whatever D is; sag that D allows over the grain radius, whatever E t is.
 MOST_STRETCHED, MOST_SAG = 0.25, 0.05
@@ -131,6 +131,7 @@ class FlexibleMembrane(LateralBoundary):
 		self.membrane = self.bonds.membrane
 		self._triangles = numpy.array([tuple(t) for t in self.membrane.triangles])
 		self._group = numpy.array(self.membrane.groups, dtype=numpy.int32)
+		self._endRows = endRows(self.membrane)
 		self._moving = [i for i, group in zip(self.membrane.ids, self._group) if group != 1]
 
 	@classmethod
@@ -231,10 +232,7 @@ class FlexibleMembrane(LateralBoundary):
 
 		The same rings all along, so that none enters or leaves the mean when a platen passes it.
 		"""
-		return self.membrane.meanRadius(*endHeights(self.membrane, self._heights()))
-
-	def _heights(self):
-		return yade.BodyArrays.positions(self.membrane.ids)[:, 2]
+		return self.membrane.meanRadius(*endHeights(self._endRows))
 
 	def volume(self, bottom, top):
 		return self.membrane.enclosedVolume(bottom, top)
@@ -259,7 +257,7 @@ class FlexibleMembrane(LateralBoundary):
 		return float(numpy.linalg.norm(force, axis=1).mean()) / (pressure * particle) if pressure > 0 else 0.0
 
 	def ownLoads(self, bottom, top):
-		return membraneLoads(self.membrane, self._heights(), self.sheet, self.pressureEngine, bottom, top)
+		return membraneLoads(self._endRows, self.sheet, self.pressureEngine, bottom, top)
 
 	def outside(self, points):
 		"""Which points between its ends are outside.

@@ -9,6 +9,9 @@ the O-rings differ. The soil's own stress is measured from its contacts (SoilMea
 
 import dataclasses
 
+import numpy
+from yade import BodyArrays
+
 
 @dataclasses.dataclass
 class MembraneLoads:
@@ -26,21 +29,24 @@ class MembraneLoads:
 	radialPressure: float = 0.0
 
 
-def endHeights(membrane, z):
+def endRows(membrane):
+	"""Ids of the rows on both sides of the planes of :func:`endHeights`: the innermost O-ring row and the row inside it, lower end first."""
+	rows, k = numpy.array(membrane.ids).reshape(membrane.rings, membrane.perRing), membrane.oRingRows
+	return rows[[k - 1, k, -k - 1, -k]].ravel().tolist()
+
+
+def endHeights(rows):
 	"""Heights [m] of the planes midway between the innermost O-ring row and the row inside it, at the lower and the upper end.
 
-	:param z: present heights of the membrane's particles [m].
+	:param rows: of :func:`endRows`.
 	"""
-	rows = z.reshape(membrane.rings, membrane.perRing).mean(axis=1)
-	k = membrane.oRingRows
-	return 0.5 * float(rows[k - 1] + rows[k]), 0.5 * float(rows[-k] + rows[-k - 1])
+	return BodyArrays.positions(rows)[:, 2].reshape(2, -1).mean(axis=1).tolist()
 
 
-def membraneLoads(membrane, z, sheet, pressureEngine, bottom, top):
+def membraneLoads(rows, sheet, pressureEngine, bottom, top):
 	"""The :class:`MembraneLoads` of the last step.
 
-	:param membrane: a HexMembrane with O-ring rows.
-	:param z: present heights of its particles [m].
+	:param rows: of :func:`endRows`, of a HexMembrane with O-ring rows.
 	:param sheet: the engines of its own mechanics, such as MembraneBonds, a step run.
 	:param pressureEngine: its MembranePressure.
 	:param bottom: height of the bottom platen's face [m].
@@ -54,6 +60,6 @@ def membraneLoads(membrane, z, sheet, pressureEngine, bottom, top):
 	return MembraneLoads(
 		axialPush=pressureEngine.axialPush(middle),
 		axialPullMiddle=pull(middle),
-		axialPullEnd=sum(pull(height) for height in endHeights(membrane, z)) / 2,
+		axialPullEnd=sum(pull(height) for height in endHeights(rows)) / 2,
 		radialPressure=sum(engine.radialShare(3) for engine in sheet),
 	)
