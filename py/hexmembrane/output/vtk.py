@@ -7,7 +7,7 @@ last step, volumetric_sum, deviatoric_sum, rotation_sum since shear began (:data
 the cell, sqrt(3/2 s:s) of the deviator s. Of the membrane's points (sphere centres): id, group, radius [m], velocity [m/s],
 displacement [m], normal_displacement [m] since the first frame along the first frame's outward normal (outward positive),
 pressure [Pa] on the particle (positive inwards, 0 on the O-ring rows); of its triangles: group (the least of the corners'), pressure [Pa] (mean of the corners'),
-hoop_strain, axial_strain [-], hoop_tension, axial_tension [N/m], see :func:`hexmembrane.scene.membrane_loads.sheetState`.
+hoop_strain, axial_strain [-], hoop_tension, axial_tension [N/m], see :func:`hexmembrane.scene.sheet_state.sheetState`.
 Of a rigid wall's points: pressure [Pa], normal_displacement [m], outward positive.
 """
 

@@ -14,7 +14,8 @@ from yade import O
 
 from hexmembrane.scene import geometry, timestep
 from hexmembrane.scene.lateral_boundary import BoundaryParts, LateralBoundary, Surface, optionalEngine, singleEngine
-from hexmembrane.scene.membrane_loads import endHeights, endRows, membraneLoads, sheetState
+from hexmembrane.scene.membrane_loads import endHeights, endRows, membraneLoads
+from hexmembrane.scene.sheet_state import sheetState
 
 #: What a sheet holds, by measurement: pressure times grain radius over E t, whatever D is; sag that D allows over the grain radius, whatever E t is.
 MOST_STRETCHED, MOST_SAG = 0.25, 0.05
