@@ -14,7 +14,7 @@ class Measure:
 
 	bands: bool = key(False, "look for shear bands in each strain step: bands.csv, and local strain in the frames")
 	step: float = key(0.01, "axial strain of the steps whose local strain is measured and in which bands are sought", "", low=0.001, high=0.1)
-	replicates: int = key(0, "replicates of the bootstrap that gives the bands' intervals, 100 give steady ones; 0: no intervals", "", low=0, high=10000)
+	replicates: int = key(0, "replicates of the bootstrap that gives a band's intervals, 100 give steady ones; 0: no intervals", "", low=0, high=10000)
 	strains: Optional[List[float]] = key(None, "axial strains at which the fields of all grains are kept in fields.h5; none: nowhere", "", low=0)
 	centres: Optional[List[List[float]]] = key(
 		None, "centres [x, y, z] of measurement regions at the start of shear, z from the bottom platen's face; their rows are in regions.csv", "m"

@@ -77,8 +77,8 @@ class Finding:
 	:param explained: share that the planes' jumps take of the displacement that is neither symmetric nor affine.
 	:param barrel: coefficient of variation of the symmetric part of the deviatoric strain.
 	:param intervals: 95 % intervals (low, high) by name: 'index', 'explained', and for each plane k 'dip[k]', 'azimuth[k]', 'thickness[k]'; empty without
-		a bootstrap. Those of an azimuth are within 180 degrees of the azimuth, so may leave 0 to 360.
-	:param certainty: share of the bootstrap's replicates with this verdict as to bands, nan without.
+		a band or a bootstrap. Those of an azimuth are within 180 degrees of the azimuth, so may leave 0 to 360.
+	:param certainty: share of the bootstrap's replicates in which the planes are bands, nan without.
 	"""
 
 	verdict: str
@@ -99,7 +99,7 @@ def find(positions, displacements, volumes, deviatoric, diameter, axis=None, rep
 	:param deviatoric: deviatoric strain in the step, (N,).
 	:param diameter: d50 [m].
 	:param axis: x and y of the specimen's axis [m]; None: the mean of the positions.
-	:param replicates: of the bootstrap, 0: no intervals. 50 or more give steady ones.
+	:param replicates: of the bootstrap where there is a band, 0: no intervals. 50 or more give steady ones.
 	:param seed: of the bootstrap's random numbers.
 	:returns: a :class:`Finding`.
 	:raises ValueError: arrays of other shapes, less than 100 grains with a cell, a diameter that is not positive.
@@ -107,16 +107,16 @@ def find(positions, displacements, volumes, deviatoric, diameter, axis=None, rep
 	x, u, volumes, strain = _checked(positions, displacements, volumes, deviatoric, diameter)
 	centre = np.append(x[:, :2].mean(axis=0) if axis is None else axis, 0.5 * (x[:, 2].min() + x[:, 2].max()))
 	step = _Step(x - centre, u, volumes / volumes.sum(), strain, diameter)
-	planes = step.bands() or (step.best,)
-	barrel = step.symmetricVariation()
-	verdict = ("band", "pair")[len(planes) - 1] if step.areBands(planes) else "barrel" if barrel >= BARREL_LIMIT else "none"
+	found, barrel = step.bands(), step.symmetricVariation()
+	planes = found or (step.best,)
+	verdict = ("band", "pair")[len(found) - 1] if found else "barrel" if barrel >= BARREL_LIMIT else "none"
 	return Finding(
 		verdict,
 		tuple(_planeOf(plane, jump, centre) for plane, jump in step.slabs(planes)),
 		min(1.0, sum(step.indices(planes))),
 		step.explained(planes),
 		barrel,
-		*_bootstrap(step, planes, replicates, seed),
+		*_bootstrap(step, found, replicates, seed),
 	)
 
 
@@ -182,7 +182,9 @@ class _Step:
 		return next((planes for planes in (self._pair(), (self.best,)) if planes and self.areBands(planes)), ())
 
 	def _pair(self):
-		"""The best plane and one that dips the other way, fitted together; none when they end up otherwise."""
+		"""The best plane and one that dips the other way, fitted together; none when they end up otherwise, or the best one has next to nothing."""
+		if sum(self.indices((self.best,))) < SECOND_LIMIT / 2:
+			return ()
 		second = self.search.best((self.best,), self.best[1] + math.pi + np.radians(np.arange(-30, 31, 15)))
 		planes = self.search.together((self.best, second))
 		turn = math.degrees((planes[1][1] - planes[0][1]) % (2 * math.pi))
@@ -203,16 +205,16 @@ def _planeOf(plane, jump, centre):
 
 def _bootstrap(step, planes, replicates, seed):
 	"""(intervals, certainty): blocks of grains drawn with replacement, the planes fitted anew from where they are."""
-	if not replicates:
+	if not (replicates and planes):
 		return {}, math.nan
 	random, x = np.random.default_rng(seed), step.search.x
 	edge = _BLOCK * float(np.prod(np.ptp(x, axis=0)) / len(x)) ** (1 / 3)
 	block = np.unique(np.floor(x / edge).astype(int), axis=0, return_inverse=True)[1].ravel()
-	count, wanted, held, table = block.max() + 1, step.areBands(planes), 0, []
+	count, held, table = block.max() + 1, 0, []
 	for _ in range(replicates):
 		again = step.weighted(step.search.weights * np.bincount(random.integers(count, size=count), minlength=count)[block])
 		found = again.search.together(planes, len(planes), tolerance=0.05, trials=60)
-		held += again.areBands(found) == wanted
+		held += again.areBands(found)
 		row = [min(1.0, sum(again.indices(found))), again.explained(found)]
 		for (plane, _), was in zip(again.slabs(found), planes):
 			turn = math.degrees((plane[1] - was[1] + math.pi) % (2 * math.pi) - math.pi)
