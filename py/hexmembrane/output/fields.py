@@ -96,7 +96,7 @@ def read(path, strain=None):
 			raise ValueError(f"fields = '{path}': holds no state yet; fix: let the test reach the first of measure.strains")
 		nearest = len(names) - 1 if strain is None else int(np.argmin(np.abs(np.array(strains) - strain)))
 		if strain is not None and abs(strains[nearest] - strain) > 1e-3:
-			kept = ", ".join(f"{value:.4g}" for value in strains)
+			kept = ", ".join(f"{value:.4f}" for value in strains)
 			raise ValueError(f"strain = {strain:g}: is not in '{path}', which has {kept}; fix: give one of these, or run the test with it in measure.strains")
 		group = file[names[nearest]]
 		arrays = {name: values[()] for name, values in group.items()}
