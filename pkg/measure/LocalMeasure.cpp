@@ -65,8 +65,9 @@ LocalMeasure::Places LocalMeasure::placesNow(const Scene& scene) const
 	now.axis = wall.state->pos;
 	now.wallRadius = static_cast<const CylinderWall&>(*wall.shape).radius;
 	// points of two states are the same ones
-	now.lattice = reference && reference->lattice.around > 0 ? reference->lattice
-	                                                         : hexmembrane::cylinderLattice(now.wallRadius, now.faces[1] - now.faces[0], wallSpacing * smallest);
+	now.lattice = reference && reference->lattice.around > 0
+	                      ? reference->lattice
+	                      : hexmembrane::cylinderLattice(now.wallRadius, now.faces[1] - now.faces[0], wallSpacing * smallest);
 	return now;
 }
 
@@ -95,7 +96,8 @@ LocalMeasure::Places LocalMeasure::placesFrom(const Scene& scene, const boost::p
 {
 	const auto numbers = [&](const char* name, int columns = 0) {
 		if (!given.has_key(name))
-			hexmembrane::reject(string("LocalMeasure.setReference: places['") + name + "']", string("None"), "is missing", "a value of LocalMeasure.reference");
+			hexmembrane::reject(string("LocalMeasure.setReference: places['") + name + "']", string("None"), "is missing",
+			                    "a value of LocalMeasure.reference");
 		return numbersOf(given[name], string("LocalMeasure.setReference: places['") + name + "']", columns);
 	};
 	const auto vectors = [&](const char* name) {
@@ -109,7 +111,8 @@ LocalMeasure::Places LocalMeasure::placesFrom(const Scene& scene, const boost::p
 	const vector<Vector3r> centres = vectors("centres"), sheet = vectors("sheet");
 	if (centres.size() != then.ids.size() || !std::equal(ids.begin(), ids.end(), then.ids.begin(), then.ids.end()) || sheet.size() != then.sheet.size() ||
 	    faces.size() != 2 || wall.size() != (soil->membrane ? 0 : 5))
-		throw std::runtime_error("LocalMeasure.setReference: places are not of this scene's grains and lateral boundary; fix: give those of the same test");
+		throw std::runtime_error(
+		        "LocalMeasure.setReference: places are not of this scene's grains and lateral boundary; fix: give those of the same test");
 	for (size_t g = 0; g < centres.size(); ++g) then.grains[g].centre = centres[g];
 	then.faces = {faces[0], faces[1]};
 	then.sheet = sheet;

@@ -34,8 +34,7 @@ TEST(CylinderTube, enclosesTheCylindersVolume)
 				}
 				EXPECT_LT(std::abs(std::hypot(middle[0] - axis[0], middle[1] - axis[1]) - radius), most);
 			}
-			for (std::size_t i = 0; i < tube.inner.size(); ++i)
-				EXPECT_NEAR((tube.centres[i] - tube.inner[i]).norm(), tube.radius, 1e-12 * radius);
+			for (std::size_t i = 0; i < tube.inner.size(); ++i) EXPECT_NEAR((tube.centres[i] - tube.inner[i]).norm(), tube.radius, 1e-12 * radius);
 		}
 }
 
