@@ -19,7 +19,7 @@ class Measure:
 	centres: Optional[List[List[float]]] = key(
 		None, "centres [x, y, z] of measurement regions at the start of shear, z from the bottom platen's face; their rows are in regions.csv", "m"
 	)
-	spacing: Optional[float] = key(None, "a grid of regions this far apart that fills the specimen, beside or without centres", "m", low=0, openLow=True)
+	spacing: Optional[float] = key(None, "a grid of regions this far apart, those of it that are whole inside the specimen, beside or without centres", "m", low=0, openLow=True)
 	radius: Optional[float] = key(None, "radius of the regions; none: 2.5 mean grain diameters by volume", "m", low=0, openLow=True)
 	carried: bool = key(True, "the material carries the regions with it; false: they stay where they are")
 	every: int = key(5, "rows of records.csv between rows of regions.csv and profile.csv", "", low=1)

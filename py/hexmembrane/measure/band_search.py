@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.special import erf
 
-#: Dips that are looked at [degrees], and largest thickness as a share of the specimen's diameter.
+#: Dips that are looked at [degrees], and largest thickness as a share of the specimen's diameter. The least is d50.
 DIPS, THICKEST = (20, 80), 0.7
 #: Highest powers of height and of squared radius in the symmetric part.
 _HEIGHT_POWER, _RADIUS_POWER = 5, 2
@@ -119,8 +119,8 @@ class Search:
 	def __init__(self, x, u, weights, strain, diameter):
 		self.x, self.u, self.weights, self.strain, self._fields = x, u, weights, strain, {}
 		wide = 2 * float(np.sqrt((x[:, :2] ** 2).sum(axis=1).max()))
-		self.low = np.array([math.radians(DIPS[0]), -math.inf, x[:, 2].min(), math.log(0.5 * diameter)])
-		self.high = np.array([math.radians(DIPS[1]), math.inf, x[:, 2].max(), math.log(max(THICKEST * wide, diameter))])
+		self.low = np.array([math.radians(DIPS[0]), -math.inf, x[:, 2].min(), math.log(diameter)])
+		self.high = np.array([math.radians(DIPS[1]), math.inf, x[:, 2].max(), math.log(max(THICKEST * wide, 2 * diameter))])
 		self.steps = np.array([math.radians(4), math.radians(6), diameter, 0.25])
 
 	def weighted(self, weights):

@@ -11,7 +11,8 @@ explain, grains weighted with their volumes: the most likely one for normal nois
 parallel to the plane, whose displacement fits best: linear across the slab, constant beyond.
 
 The localisation index is the share of the specimen's deviatoric strain that A exp(-6 s^2/t^2) stands for: what bands carry above all that is symmetric, 1 at
-most. Uniform strain and a barrel have about 0. There is a band when the index is INDEX_LIMIT or more. Uses nothing of YADE.
+most. Uniform strain and a barrel have about 0. There is a band when the index is INDEX_LIMIT or more, the jump explains EXPLAINED_LIMIT or more of the displacement
+that is neither symmetric nor affine, and neither dip nor thickness is at a limit of the search: there the index says nothing. Uses nothing of YADE.
 """
 
 import dataclasses
@@ -22,8 +23,8 @@ import numpy as np
 
 from hexmembrane.measure.band_search import Search, normal, slabProfile
 
-#: Least localisation index of bands.
-INDEX_LIMIT = 0.2
+#: Least localisation index of bands, least share of the displacement that their jumps explain.
+INDEX_LIMIT, EXPLAINED_LIMIT = 0.2, 0.2
 #: Least index of the second band of a pair alone, and of the first.
 SECOND_LIMIT = 0.1
 #: Least coefficient of variation of the symmetric part of the deviatoric strain in a barrel.
@@ -173,9 +174,10 @@ class _Step:
 		return [float(field.excess(plane)[0] * share / self.strain) for (plane, field), share in zip(self._each(planes), shares)]
 
 	def areBands(self, planes):
-		"""Whether they are. A plane as thick as the search allows is none."""
+		"""Whether they are."""
 		indices = self.indices(planes)
-		return all(map(self.search.isThin, planes)) and sum(indices) >= INDEX_LIMIT and (len(planes) == 1 or min(indices) >= SECOND_LIMIT)
+		strong = sum(indices) >= INDEX_LIMIT and (len(planes) == 1 or min(indices) >= SECOND_LIMIT)
+		return strong and all(map(self.search.isFree, planes)) and self.explained(planes) >= EXPLAINED_LIMIT
 
 	def bands(self):
 		"""The band or the two of a conjugate pair, none without. Two that are a pair may be no band when each is looked at alone."""

@@ -15,19 +15,20 @@ from scipy.spatial import cKDTree
 
 from hexmembrane.output import fields, tables, vtk
 
-#: Quantities: name -> (label with unit, colour map, whether both signs count).
+#: Quantities: name -> (label with unit, colour map, whether both signs count). The coordination number counts all partners. Shear intensity (sum of the steps'
+#: deviatoric strain), rotation and displacement count from the start of shear; the normal is the section's.
 QUANTITIES = {
 	"porosity": ("porosity [-]", "viridis", False),
-	"coordination": ("coordination number, all partners [-]", "cividis", False),
-	"shear": ("shear intensity: deviatoric strain since shear began [-]", "inferno", False),
-	"increment": ("deviatoric strain in the last step [-]", "inferno", False),
-	"rotation": ("rotation since shear began, about the section's normal [degrees]", "RdBu_r", True),
-	"displacement": ("displacement since shear began [mm]", "magma", False),
+	"coordination": ("coordination number [-]", "cividis", False),
+	"shear": ("shear intensity [-]", "inferno", False),
+	"increment": ("deviatoric strain of the step [-]", "inferno", False),
+	"rotation": ("rotation about the normal [degrees]", "RdBu_r", True),
+	"displacement": ("displacement [mm]", "magma", False),
 }
 #: Points of a section are this far apart, in d50; means reach over this many standard deviations of their weight.
 _GRID, _REACH = 0.25, 2.5
-#: Share of the weight inside the specimen that a point needs to be in the cloud.
-_EDGE = 0.35
+#: A point farther from every grain's surface than this is outside the specimen, in d50: pores are narrower.
+_EDGE = 0.3
 
 
 @dataclasses.dataclass
@@ -88,10 +89,9 @@ def cloud(path, strain, section, quantities=tuple(QUANTITIES)):
 	a = np.arange(-wide, wide, _GRID * d50)
 	z = np.arange(_GRID * d50 / 2, test["top"] - test["bottom"], _GRID * d50)
 	points = (section.offset * normal + a[None, :, None] * along + z[:, None, None] * [0, 0, 1]).reshape(-1, 3)
-	weight = _weights(x, points, d50)
+	weight, inside = _weights(x, points, d50), _near(x, grains["radii"][kept], points, _EDGE * d50)
 	volume, solid = grains["volume"][kept], 4 / 3 * np.pi * grains["radii"][kept] ** 3
 	cells = weight @ volume
-	inside = cells > _EDGE * np.median(cells[cells > 0])
 	one = np.ones(kept.sum())
 	per = {
 		"porosity": (volume - solid, volume, 1.0),
@@ -117,6 +117,12 @@ def _weights(x, points, width):
 	pairs = cKDTree(points).sparse_distance_matrix(cKDTree(x), _REACH * width, output_type="coo_matrix")
 	pairs.data = np.exp(-0.5 * (pairs.data / width) ** 2)
 	return pairs.tocsr()
+
+
+def _near(x, radii, points, gap):
+	"""Which points are within grains or nearer to one's surface than ``gap`` [m]."""
+	distance, nearest = cKDTree(x).query(points, k=min(6, len(x)))
+	return (distance - radii[nearest]).min(axis=1) < gap
 
 
 def picture(path, clouds, name, titles=(), rows=()):

@@ -107,7 +107,10 @@ class Inside:
 		if self.keys.spacing:
 			wide = scene.lateralBoundary.meanRadius()
 			grid = yade.MeasureRegions.grid((-wide, -wide, bottom), (wide, wide, top), spacing=self.keys.spacing)
-			found += [tuple(x) for x in grid if math.hypot(x[0], x[1]) < wide - radius / 2]
+			low, high, core = bottom + radius, top - radius, wide - radius
+			found += [tuple(x) for x in grid if math.hypot(x[0], x[1]) <= core and low <= x[2] <= high]
+		if not found:
+			raise ValueError(f"measure.spacing = {self.keys.spacing:g}: no region of radius {radius:.3g} m is whole inside the specimen; fix: a smaller measure.radius")
 		return np.array(found)
 
 	def _isDue(self, number):
