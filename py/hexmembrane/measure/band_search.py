@@ -141,9 +141,9 @@ class Search:
 			self._fields[name] = Field((self.x, self.u, self.weights, self.strain), planes)
 		return self._fields[name]
 
-	def isThin(self, plane):
-		"""Whether its thickness is below the search's upper limit."""
-		return plane[3] < self.high[3] - 1e-3
+	def isFree(self, plane):
+		"""Whether neither its dip nor its thickness is at a limit of the search."""
+		return all(self.low[k] + 1e-3 < plane[k] < self.high[k] - 1e-3 for k in (0, 3))
 
 	def refined(self, field, plane, tolerance=0.02, trials=200):
 		"""The most likely plane near ``plane`` for what the field has left; ``tolerance`` in steps of the search."""
