@@ -28,7 +28,7 @@ QUANTITIES = {
 #: Points of a section are this far apart, in d50; means reach over this many standard deviations of their weight.
 _GRID, _REACH = 0.25, 2.5
 #: A point farther from every grain's surface than this is outside the specimen, in d50: pores are narrower.
-_EDGE = 0.3
+_EDGE = 0.4
 
 
 @dataclasses.dataclass
