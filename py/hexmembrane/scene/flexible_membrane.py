@@ -234,7 +234,10 @@ class FlexibleMembrane(LateralBoundary):
 
 		The same rings all along, so that none enters or leaves the mean when a platen passes it.
 		"""
-		return self.membrane.meanRadius(*endHeights(self._endRows))
+		return self.membrane.meanRadius(*self._ends())
+
+	def _ends(self):
+		return endHeights(yade.BodyArrays.positions(self._endRows)[:, 2])
 
 	def volume(self, bottom, top):
 		return self.membrane.enclosedVolume(bottom, top)
@@ -259,7 +262,7 @@ class FlexibleMembrane(LateralBoundary):
 		return float(numpy.linalg.norm(force, axis=1).mean()) / (pressure * particle) if pressure > 0 else 0.0
 
 	def ownLoads(self, bottom, top):
-		return membraneLoads(self._endRows, self.sheet, self.pressureEngine, bottom, top)
+		return membraneLoads(self._ends(), self.sheet, self.pressureEngine, bottom, top)
 
 	def outside(self, points):
 		"""Which points between its ends are outside.

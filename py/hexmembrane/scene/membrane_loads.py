@@ -10,7 +10,6 @@ the O-rings differ. The soil's own stress is measured from its contacts (SoilMea
 import dataclasses
 
 import numpy
-from yade import BodyArrays
 
 
 @dataclasses.dataclass
@@ -35,18 +34,18 @@ def endRows(membrane):
 	return rows[[k - 1, k, -k - 1, -k]].ravel().tolist()
 
 
-def endHeights(rows):
+def endHeights(z):
 	"""Heights [m] of the planes midway between the innermost O-ring row and the row inside it, at the lower and the upper end.
 
-	:param rows: of :func:`endRows`.
+	:param z: present heights [m] of the particles of :func:`endRows`.
 	"""
-	return BodyArrays.positions(rows)[:, 2].reshape(2, -1).mean(axis=1).tolist()
+	return z.reshape(2, -1).mean(axis=1).tolist()
 
 
-def membraneLoads(rows, sheet, pressureEngine, bottom, top):
+def membraneLoads(ends, sheet, pressureEngine, bottom, top):
 	"""The :class:`MembraneLoads` of the last step.
 
-	:param rows: of :func:`endRows`, of a HexMembrane with O-ring rows.
+	:param ends: of :func:`endHeights`.
 	:param sheet: the engines of its own mechanics, such as MembraneBonds, a step run.
 	:param pressureEngine: its MembranePressure.
 	:param bottom: height of the bottom platen's face [m].
@@ -60,6 +59,6 @@ def membraneLoads(rows, sheet, pressureEngine, bottom, top):
 	return MembraneLoads(
 		axialPush=pressureEngine.axialPush(middle),
 		axialPullMiddle=pull(middle),
-		axialPullEnd=sum(pull(height) for height in endHeights(rows)) / 2,
+		axialPullEnd=sum(pull(height) for height in ends) / 2,
 		radialPressure=sum(engine.radialShare(3) for engine in sheet),
 	)
