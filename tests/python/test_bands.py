@@ -74,6 +74,7 @@ def test_grainsWithoutACellAreLeftOut(grains):
 		({"positions": np.zeros((3, 2))}, r"bands.find: positions = an array \(3, 2\): \(7045, 3\) expected; fix: "),
 		({"deviatoric": np.zeros(4)}, r"bands.find: deviatoric = an array \(4,\): .*; fix: "),
 		({"diameter": 0}, r"bands.find: diameter = 0: is no length; fix: "),
+		({"deviatoric": np.zeros(7045)}, r"bands.find: deviatoric = 0 in all grains: .*; fix: "),
 		({"volumes": np.zeros(7045)}, r"bands.find: volumes = 0 grains with a cell .* less than 100; fix: "),
 	],
 )

@@ -103,7 +103,7 @@ def find(positions, displacements, volumes, deviatoric, diameter, axis=None, rep
 	:param replicates: of the bootstrap where there is a band, 0: no intervals. 50 or more give steady ones.
 	:param seed: of the bootstrap's random numbers.
 	:returns: a :class:`Finding`.
-	:raises ValueError: arrays of other shapes, less than 100 grains with a cell, a diameter that is not positive.
+	:raises ValueError: arrays of other shapes, less than 100 grains with a cell, no strain at all, a diameter that is not positive.
 	"""
 	x, u, volumes, strain = _checked(positions, displacements, volumes, deviatoric, diameter)
 	centre = np.append(x[:, :2].mean(axis=0) if axis is None else axis, 0.5 * (x[:, 2].min() + x[:, 2].max()))
@@ -133,6 +133,8 @@ def _checked(positions, displacements, volumes, deviatoric, diameter):
 	kept = (v > 0) & np.isfinite(e) & np.isfinite(x).all(axis=1) & np.isfinite(u).all(axis=1)
 	if kept.sum() < FEWEST:
 		raise ValueError(f"bands.find: volumes = {int(kept.sum())} grains with a cell and a strain: less than {FEWEST}; fix: give the grains of a whole specimen")
+	if not (v[kept] @ e[kept] > 0):
+		raise ValueError("bands.find: deviatoric = 0 in all grains: there is no strain to look at; fix: give a step in which the specimen is strained")
 	return x[kept], u[kept], v[kept], e[kept]
 
 
