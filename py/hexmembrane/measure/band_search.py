@@ -10,8 +10,10 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.special import erf
 
-#: Dips that are looked at [degrees], and largest thickness as a share of the specimen's diameter. The least is d50.
+#: Dips that are looked at [degrees], and largest thickness of a band as a share of the specimen's diameter. The least is d50.
 DIPS, THICKEST = (20, 80), 0.7
+#: How much farther the search goes: the smooth profiles that fit a slab of uniform shear best are up to a quarter thicker than it.
+_FARTHER = 1.3
 #: Highest powers of height and of squared radius in the symmetric part.
 _HEIGHT_POWER, _RADIUS_POWER = 5, 2
 #: Grains that the search begins with.
@@ -119,8 +121,10 @@ class Search:
 	def __init__(self, x, u, weights, strain, diameter):
 		self.x, self.u, self.weights, self.strain, self._fields = x, u, weights, strain, {}
 		wide = 2 * float(np.sqrt((x[:, :2] ** 2).sum(axis=1).max()))
+		#: Largest thickness of a band [m].
+		self.thickest = max(THICKEST * wide, 2 * diameter)
 		self.low = np.array([math.radians(DIPS[0]), -math.inf, x[:, 2].min(), math.log(diameter)])
-		self.high = np.array([math.radians(DIPS[1]), math.inf, x[:, 2].max(), math.log(max(THICKEST * wide, 2 * diameter))])
+		self.high = np.array([math.radians(DIPS[1]), math.inf, x[:, 2].max(), math.log(_FARTHER * self.thickest)])
 		self.steps = np.array([math.radians(4), math.radians(6), diameter, 0.25])
 
 	def weighted(self, weights):
@@ -141,9 +145,9 @@ class Search:
 			self._fields[name] = Field((self.x, self.u, self.weights, self.strain), planes)
 		return self._fields[name]
 
-	def isFree(self, plane):
-		"""Whether neither its dip nor its thickness is at a limit of the search."""
-		return all(self.low[k] + 1e-3 < plane[k] < self.high[k] - 1e-3 for k in (0, 3))
+	def isFree(self, plane, slab):
+		"""Whether neither its dip nor its thickness is at a limit of the search, nor its slab (:meth:`thickness`) too thick for a band."""
+		return all(self.low[k] + 1e-3 < plane[k] < self.high[k] - 1e-3 for k in (0, 3)) and math.exp(slab[3]) < self.thickest
 
 	def refined(self, field, plane, tolerance=0.02, trials=200):
 		"""The most likely plane near ``plane`` for what the field has left; ``tolerance`` in steps of the search."""
@@ -181,7 +185,7 @@ class Search:
 		for dip in np.radians(np.arange(DIPS[0] + 5, DIPS[1], 10)):
 			for azimuth in azimuths:
 				for offset in np.quantile(self.x @ normal(dip, azimuth), np.linspace(0.2, 0.8, 7)):
-					plane = np.array([dip, azimuth, offset, self.high[3] - 0.7])
+					plane = np.array([dip, azimuth, offset, math.log(self.thickest / 2)])
 					seen.append((field.unlikely(plane), plane))
 		chosen = []
 		for _, plane in sorted(seen, key=lambda one: one[0]):

@@ -179,7 +179,9 @@ class _Step:
 		"""Whether they are."""
 		indices = self.indices(planes)
 		strong = sum(indices) >= INDEX_LIMIT and (len(planes) == 1 or min(indices) >= SECOND_LIMIT)
-		return strong and all(map(self.search.isFree, planes)) and self.explained(planes) >= EXPLAINED_LIMIT
+		if not (strong and self.explained(planes) >= EXPLAINED_LIMIT):
+			return False
+		return all(self.search.isFree(plane, slab) for plane, (slab, _) in zip(planes, self.slabs(planes)))
 
 	def bands(self):
 		"""The band or the two of a conjugate pair, none without. Two that are a pair may be no band when each is looked at alone."""
