@@ -16,8 +16,8 @@ def grains():
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_verdictDipAndThickness(kind, grains):
-	"""Two fields of each kind."""
-	for seed in range(2):
+	"""A field of each kind without a band, two of each with one."""
+	for seed in range(2 if kind in ("band", "pair") else 1):
 		one = trial(kind, grains, seed)
 		assert one.right, (seed, one.found)
 		assert (abs(one.errors[:, 0]) < 2).all() and (abs(one.errors[:, 2]) < 1).all(), (seed, one.errors)
