@@ -18,7 +18,7 @@ import numpy
 from hexmembrane import configuration
 from hexmembrane.measure import bands
 from hexmembrane.output import clouds, groups, tables
-from hexmembrane.run import run
+from hexmembrane.run import checkpoints, run
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from yade import O
@@ -43,7 +43,7 @@ def provide(kind, pressure, seed, out, short):
 		config = configuration.load(HERE / f"{kind}-{pressure}.yaml")
 		config = configuration.derived(config, {"specimen": {"seed": seed}, "measure": MEASURE})
 		O.reset()
-		run(configuration.derived(config, SHORT) if short else config, folder, resume=(folder / "checkpoint.json").is_file(), quiet=True)
+		run(configuration.derived(config, SHORT) if short else config, folder, resume=checkpoints.exist(folder), quiet=True)
 	return folder
 
 
