@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Displacement fields with known bands in a real packing, with noise; trials of the search for bands in them.
 
-``python3 tests/python/syntheticBands.py TRIALS`` is the long form (in YADE: scripts/yade): that many trials of each kind, what was found, in how many it was right.
+``scripts/yade -x tests/python/syntheticBands.py TRIALS`` is the long form: that many trials of each kind, what was found, in how many it was right.
 Noise: white, 0.006 d50, and vortices, 0.015 d50 with wave lengths of about 25 d50. In 1 % of uniform strain the deviatoric strain then varies by 0.35 of its mean from
 grain to grain, as in a test.
 """
