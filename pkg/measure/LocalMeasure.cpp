@@ -5,6 +5,7 @@
 
 #include "base/GatherBodies.hpp"
 #include "base/NamedFields.hpp"
+#include "boundary/CylinderWall.hpp"
 #include "kernels/measure/LocalStrain.hpp"
 #include "membrane/BodyView.hpp"
 
@@ -23,6 +24,9 @@ boost::python::object tensors(const vector<Matrix3r>& each, const vector<Real>& 
 	return numpyTensors(quotients);
 }
 
+// Distance of the points that a wall is taken for, in radii of the smallest grain: as the membrane's particles by default.
+constexpr Real wallSpacing = 1.6;
+
 hexmembrane::PowerSite siteOf(const Scene& scene, Body::id_t id)
 {
 	const Body* body = livingBody(*scene.bodies, id);
@@ -38,36 +42,111 @@ void LocalMeasure::requireSoil(const Scene& scene) const
 {
 	if (!soil) hexmembrane::reject("LocalMeasure.soil", string("None"), "what the grains are in is not known", "soil=SoilMeasure(membrane=...)");
 	soil->require(scene, "LocalMeasure.soil");
-	if (!soil->membrane)
-		hexmembrane::reject("LocalMeasure.soil", string("SoilMeasure(wall=" + std::to_string(soil->wall) + ")"), "has no membrane",
-		                    "a soil in a HexMembrane");
 }
 
-LocalMeasure::Instant LocalMeasure::look(const Scene& scene) const
+LocalMeasure::Places LocalMeasure::placesNow(const Scene& scene) const
 {
 	requireSoil(scene);
-	const HexMembrane& membrane = *soil->membrane;
-	Instant now;
+	Places now;
 	const vector<char> grain = soil->grainsOf(scene);
+	Real smallest = std::numeric_limits<Real>::infinity();
 	for (size_t id = 0; id < grain.size(); ++id) {
 		if (!grain[id]) continue;
 		now.ids.push_back(static_cast<Body::id_t>(id));
 		now.grains.push_back(siteOf(scene, now.ids.back()));
+		smallest = std::min(smallest, now.grains.back().radius);
 	}
-	hexmembrane::Enclosure enclosure;
-	membrane.gather(scene, "LocalMeasure.soil", enclosure.centres);
-	enclosure.radius = membrane.sphereRadius;
-	enclosure.inner = now.inner = membrane.innerPoints(enclosure.centres);
-	enclosure.triangles = membrane.triangleList();
 	now.faces = soil->faces(scene);
-	enclosure.bottom = now.faces[0];
-	enclosure.top = now.faces[1];
-	now.cells = named("LocalMeasure", {{"grains", "soil"}, {"triangles", "soil.membrane: particle"}},
-	                  [&] { return std::make_shared<const hexmembrane::PowerCells>(now.grains, enclosure); });
+	if (soil->membrane) {
+		soil->membrane->gather(scene, "LocalMeasure.soil", now.sheet);
+		return now;
+	}
+	const Body& wall = *(*scene.bodies)[soil->wall];
+	now.axis = wall.state->pos;
+	now.wallRadius = static_cast<const CylinderWall&>(*wall.shape).radius;
+	// points of two states are the same ones
+	now.lattice = reference && reference->lattice.around > 0
+	                      ? reference->lattice
+	                      : hexmembrane::cylinderLattice(now.wallRadius, now.faces[1] - now.faces[0], wallSpacing * smallest);
 	return now;
 }
 
-void LocalMeasure::setReference() { reference = std::make_shared<const Instant>(look(currentScene())); }
+LocalMeasure::Instant LocalMeasure::with(Places places) const
+{
+	Instant made;
+	static_cast<Places&>(made) = std::move(places);
+	hexmembrane::Enclosure enclosure;
+	if (soil->membrane) {
+		enclosure.centres = made.sheet;
+		enclosure.radius = soil->membrane->sphereRadius;
+		enclosure.inner = soil->membrane->innerPoints(made.sheet);
+		enclosure.triangles = soil->membrane->triangleList();
+		enclosure.bottom = made.faces[0];
+		enclosure.top = made.faces[1];
+	} else
+		enclosure = hexmembrane::cylinderTube(made.axis, made.wallRadius, made.faces[0], made.faces[1], made.lattice);
+	made.cells = named("LocalMeasure", {{"grains", "soil"}, {"triangles", "soil.membrane: particle"}},
+	                   [&] { return std::make_shared<const hexmembrane::PowerCells>(made.grains, enclosure); });
+	made.inner = std::move(enclosure.inner);
+	made.triangles = std::move(enclosure.triangles);
+	return made;
+}
+
+LocalMeasure::Places LocalMeasure::placesFrom(const Scene& scene, const boost::python::dict& given) const
+{
+	const auto numbers = [&](const char* name, int columns = 0) {
+		if (!given.has_key(name))
+			hexmembrane::reject(string("LocalMeasure.setReference: places['") + name + "']", string("None"), "is missing",
+			                    "a value of LocalMeasure.reference");
+		return numbersOf(given[name], string("LocalMeasure.setReference: places['") + name + "']", columns);
+	};
+	const auto vectors = [&](const char* name) {
+		vector<Vector3r> found;
+		const vector<Real> rows = numbers(name, 3);
+		for (size_t i = 0; i < rows.size(); i += 3) found.emplace_back(rows[i], rows[i + 1], rows[i + 2]);
+		return found;
+	};
+	Places then = placesNow(scene);
+	const vector<Real> ids = numbers("ids"), faces = numbers("faces"), wall = numbers("wall");
+	const vector<Vector3r> centres = vectors("centres"), sheet = vectors("sheet");
+	if (centres.size() != then.ids.size() || !std::equal(ids.begin(), ids.end(), then.ids.begin(), then.ids.end()) || sheet.size() != then.sheet.size() ||
+	    faces.size() != 2 || wall.size() != (soil->membrane ? 0 : 5))
+		throw std::runtime_error(
+		        "LocalMeasure.setReference: places are not of this scene's grains and lateral boundary; fix: give those of the same test");
+	for (size_t g = 0; g < centres.size(); ++g) then.grains[g].centre = centres[g];
+	then.faces = {faces[0], faces[1]};
+	then.sheet = sheet;
+	if (!soil->membrane) {
+		then.axis = Vector3r(wall[0], wall[1], 0);
+		then.wallRadius = wall[2];
+		then.lattice = {static_cast<int>(wall[3]), static_cast<int>(wall[4])};
+	}
+	return then;
+}
+
+void LocalMeasure::setReference(const boost::python::object& places)
+{
+	const Scene& scene = currentScene();
+	const bool before = !places.is_none();
+	reference = std::make_shared<const Instant>(with(before ? placesFrom(scene, boost::python::extract<boost::python::dict>(places)) : placesNow(scene)));
+}
+
+boost::python::object LocalMeasure::reference_get() const
+{
+	if (!reference) return {};
+	vector<Vector3r> centres;
+	for (const auto& grain : reference->grains) centres.push_back(grain.centre);
+	vector<Real> wall;
+	if (reference->lattice.around > 0)
+		wall = {reference->axis[0], reference->axis[1], reference->wallRadius, Real(reference->lattice.around), Real(reference->lattice.rows)};
+	boost::python::dict values;
+	values["ids"] = numpyArray(reference->ids, "i4");
+	values["centres"] = numpyArray(centres, "f8", 3);
+	values["faces"] = numpyArray(vector<Real>(reference->faces.begin(), reference->faces.end()), "f8");
+	values["sheet"] = numpyArray(reference->sheet, "f8", 3);
+	values["wall"] = numpyArray(wall, "f8");
+	return values;
+}
 
 vector<Matrix3r> LocalMeasure::stresses(const Scene& scene, const Instant& now) const
 {
@@ -145,6 +224,10 @@ boost::python::dict LocalMeasure::mesh() const
 	values["tetrahedra"] = numpyArray(tetrahedra, "i4", 4);
 	values["times"] = numpyArray(times, "i4");
 	values["feet"] = numpyArray(cells.feet(), "i4");
+	vector<std::array<int, 3>> triangles = now.triangles;
+	for (auto& t : triangles)
+		for (int& corner : t) corner += static_cast<int>(now.grains.size());
+	values["triangles"] = numpyArray(triangles, "i4", 3);
 	return values;
 }
 

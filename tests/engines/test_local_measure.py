@@ -108,9 +108,52 @@ def test_refuses(O):
 		LocalMeasure().setReference()
 	with pytest.raises(RuntimeError, match=r"LocalMeasure.triangulation: ids = 5: there is no such sphere; fix: "):
 		LocalMeasure.triangulation([5])
-	made = build("reference", lateral="wall", **SMALL)
-	with pytest.raises(ValueError, match=r"LocalMeasure.soil = SoilMeasure\(wall=\d+\): has no membrane; fix: "):
-		localOf(made).measure()
+
+
+def test_meansInAWall(O, tier):
+	"""The wall is taken for triangles that enclose its volume: cells, strain and stress have the means of that body's boundary."""
+	made = build(tier, lateral="wall", velocity=0.05, membraneFriction=0.3, **SMALL)
+	local = localOf(made)
+	soil, wall = local.soil, O.bodies[made["wall"].wall]
+	run(20)
+	before, faces, radius = local.mesh(), soil.faces, wall.shape.radius
+	local.setReference()
+	run(100)
+	found, after, stress = local.measure(), local.mesh()["corners"], soil.stress()
+	assert wall.shape.radius != radius
+	assert found["referenceVolume"].sum() == pytest.approx(np.pi * radius**2 * (faces[1] - faces[0]), rel=1e-10)
+	assert found["volume"].sum() == pytest.approx(stress["volume"], rel=1e-10)
+	tube = before["triangles"]
+	moved = after[: tube.max() + 1] - before["corners"][: tube.max() + 1]
+	mean, expected = weighted(found["referenceVolume"], found["gradient"]), overTube(before["corners"], tube, moved, *faces)
+	assert np.abs((mean - expected)[:, :2]).max() < 1e-10 * np.abs(mean).max()
+	# seen from the wall itself: radius and height change
+	growth = (wall.shape.radius**2 / radius**2) * np.diff(soil.faces)[0] / np.diff(faces)[0] - 1
+	assert np.trace(mean) / found["referenceVolume"].sum() == pytest.approx(growth, rel=0.01)
+	mean = weighted(found["volume"], found["stress"]) / found["volume"].sum()
+	assert np.abs(mean - stress["whole"]).max() < 1e-10 * np.abs(stress["whole"]).max()
+
+
+@pytest.mark.parametrize("lateral", ["membrane", "wall"])
+def test_aSavedReference(O, tmp_path, lateral):
+	"""Strain counts on from a reference that was saved beside the scene."""
+	local = localOf(build("compact", lateral=lateral, velocity=0.05, **SMALL))
+	assert local.reference is None
+	run(20)
+	local.setReference()
+	places = local.reference
+	assert places["centres"] == pytest.approx(BodyArrays.positions(places["ids"].tolist())) and len(places["wall"]) == (5 if lateral == "wall" else 0)
+	run(60)
+	expected = local.measure()
+	other = LocalMeasure(soil=local.soil)
+	other.setReference({name: values.tolist() for name, values in places.items()})
+	found = other.measure()
+	for name, values in expected.items():
+		assert np.array_equal(found[name], values, equal_nan=True), name
+	with pytest.raises(RuntimeError, match=r"LocalMeasure.setReference: places are not of this scene's .*; fix: "):
+		other.setReference({**places, "ids": places["ids"][:-1]})
+	with pytest.raises(ValueError, match=r"LocalMeasure.setReference: places\['faces'\] = None: is missing; fix: "):
+		other.setReference({name: values for name, values in places.items() if name != "faces"})
 
 
 def test_refusesOtherGrainsThanTheReferences(O):

@@ -8,7 +8,8 @@ import yade
 from hexmembrane import configuration
 from hexmembrane.configuration import Config
 from hexmembrane.configuration.schema import markdown
-from hexmembrane.output import records
+from hexmembrane.measure.local import FIELDS
+from hexmembrane.output import inside, records, tables
 from hexmembrane.scene import specimen, timestep
 
 ROOT = pathlib.Path(__file__).parents[2]
@@ -43,6 +44,13 @@ def test_tableOfTheReadingContract():
 	text = (ROOT / "pkg" / "compact" / "README.md").read_text(encoding="utf-8")
 	between = text.partition("<!-- CompactLoop.contract() -->")[2].partition("<!-- end -->")[0].strip()
 	assert between == contractTable(), "fix: paste this table:\n" + contractTable()
+
+
+def test_tablesOfWhatIsMeasuredInside():
+	"""Fix: paste what ``hexmembrane.output.tables.markdown`` gives of each of ``hexmembrane.output.inside``."""
+	text = (ROOT / "examples" / "inside.md").read_text(encoding="utf-8")
+	assert all(tables.markdown(columns) in text for columns in (inside.REGIONS, inside.BANDS, inside.PROFILE))
+	assert all(f"| `{name}` | {unit} | {meaning} |" in text for name, (unit, meaning) in FIELDS.items())
 
 
 def test_tableOfModules():

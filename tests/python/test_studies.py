@@ -105,3 +105,12 @@ def test_packingStudy():
 	assert len(core) == 3 and all(0.3 < n < 0.43 for n in core)
 	reached = [line for line in lines if line.startswith("400 grains")]
 	assert len(reached) == 3 and "fix: " in reached[1] and "coordination" in reached[2]
+
+
+def test_insideFigure(tmp_path):
+	lines = study("examples/paper/inside_figure.py", tmp_path)
+	rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+	assert [row[0] for row in rows[2:]] == ["flexible-150-s1", "rigid-150-s1"] and all(len(row) == len(rows[0]) for row in rows)
+	for name in ("clouds-150-s1/shear", "clouds-150-s1/porosity", "bulge-rigid-150-s1"):
+		assert min(Image.open(tmp_path / f"{name}.png").size) > 300, name
+	assert len(list((tmp_path / "clouds-150-s1").glob("*.vtp"))) == 6

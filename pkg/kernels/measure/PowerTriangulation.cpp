@@ -9,6 +9,8 @@
 #include <CGAL/Triangulation_cell_base_with_info_3.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
+#include <algorithm>
+
 namespace hexmembrane {
 
 namespace {
@@ -46,6 +48,8 @@ void listNeighbours(const Regular& regular, int sites, PowerTriangulation& out)
 	out.starts = count;
 	out.neighbours.resize(count[sites]);
 	eachEdge([&](int a, int b) { out.neighbours[count[a]++] = b; });
+	// CGAL lists edges in an order that depends on addresses in memory: sums over neighbours would differ from run to run in their last bit
+	for (int i = 0; i < sites; ++i) std::sort(out.neighbours.begin() + out.starts[i], out.neighbours.begin() + out.starts[i + 1]);
 }
 
 } // namespace

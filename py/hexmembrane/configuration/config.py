@@ -9,7 +9,12 @@ import math
 import os
 from typing import Optional
 
+<<<<<<< HEAD
 from hexmembrane.configuration.schema import LONGEST_PATH, REQUIRED, ConfigError, build, key, paths, section, shared, toDict
+=======
+from hexmembrane.configuration.measure import Measure
+from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, paths, section, shared, toDict
+>>>>>>> h-inside
 
 #: Keys of the specimen that are files.
 PATHS = ("packing", "gradation")
@@ -347,6 +352,7 @@ class Config:
 	shear: Shear = section(Shear, "shearing")
 	numerics: Numerics = section(Numerics, "time step, damping, threads")
 	output: Output = section(Output, "records, VTK, checkpoints")
+	measure: Measure = section(Measure, "measurement inside the specimen in shear")
 
 	@classmethod
 	def of(cls, values, folder="."):
@@ -360,6 +366,7 @@ class Config:
 		config.given = frozenset(paths(values if isinstance(values, dict) else toDict(config)))
 		if config.membrane.placement == "centred" and config.membrane.particleRadius is None:
 			raise ConfigError("membrane.placement", "centred", "the soil's radius then follows from the particle's radius", "give membrane.particleRadius")
+		config.measure.checkWith(config.specimen, config.shear)
 		for name in PATHS:
 			path = getattr(config.specimen, name)
 			if path is not None:

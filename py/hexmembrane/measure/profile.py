@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Stress along the specimen's height: what the membrane hands over row by row, and what the soil carries slice by slice (SoilMeasure.profile)."""
+"""Stress and radius along the specimen's height: what the membrane hands over row by row, and what the soil carries slice by slice (SoilMeasure.profile)."""
 
 import dataclasses
 
@@ -12,7 +12,7 @@ class Profile:
 	"""Stresses along the height [Pa], compression and inward pressure positive; heights above the bottom platen's face [m].
 
 	:param height: of the specimen, between the faces.
-	:param rowHeight: of each membrane row, mean of its particles; O-ring rows included.
+	:param rowHeight: of each membrane row, mean of its particles; O-ring rows included; none in a rigid wall.
 	:param rowPressure: transmitted radial pressure of each row, see ``HexMembrane.transmittedByRing``.
 	:param edges: of the n slices, n + 1.
 	:param volume: of each slice inside the membrane's inner surface [m3], n.
@@ -33,21 +33,26 @@ class Profile:
 		"""Heights of the slices' middles [m]."""
 		return 0.5 * (self.edges[1:] + self.edges[:-1])
 
+	@property
+	def radius(self):
+		"""Mean radius of the lateral boundary in each slice [m], that of a cylinder of the slice's volume: the bulging profile."""
+		return numpy.sqrt(self.volume / (numpy.pi * numpy.diff(self.edges)))
+
 
 def measure(scene, count=16):
 	"""The :class:`Profile` of the scene as it stands, from the contacts of the last step.
 
-	:param scene: handles, :class:`hexmembrane.scene.handles.Scene`, of a test in a flexible membrane.
+	:param scene: handles, :class:`hexmembrane.scene.handles.Scene`, of a test.
 	:param count: slices, >= 1.
 	:raises ValueError: no slice.
 	"""
-	membrane = scene.lateralBoundary.membrane
+	membrane = scene.measure.membrane
 	edges, volume, stress = scene.measure.profile(count)
-	rows = BodyArrays.positions(membrane.ids)[:, 2].reshape(membrane.rings, membrane.perRing).mean(axis=1)
+	rows = BodyArrays.positions(membrane.ids)[:, 2].reshape(membrane.rings, membrane.perRing).mean(axis=1) if membrane else numpy.zeros(0)
 	return Profile(
 		height=edges[-1] - edges[0],
 		rowHeight=rows - edges[0],
-		rowPressure=numpy.array(membrane.transmittedByRing()),
+		rowPressure=numpy.array(membrane.transmittedByRing() if membrane else ()),
 		edges=edges - edges[0],
 		volume=volume,
 		radial=0.5 * (stress[:, 0, 0] + stress[:, 1, 1]),

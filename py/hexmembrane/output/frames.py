@@ -10,8 +10,8 @@ from yade import O
 from hexmembrane.output import vtk
 
 
-def writeGrains(path, grains, measure):
-	"""Write the grains' state as it stands; ``measure``: the scene's SoilMeasure, for the coordination numbers."""
+def writeGrains(path, grains, measure, more=()):
+	"""Write the grains' state as it stands; ``measure``: the scene's SoilMeasure, for the coordination numbers; ``more``: further arrays by name."""
 	ids, arrays = grains.ids, yade.BodyArrays
 	data = {
 		"id": numpy.array(ids),
@@ -19,6 +19,7 @@ def writeGrains(path, grains, measure):
 		"velocity": arrays.velocities(ids),
 		"displacement": arrays.displacements(ids),
 		"coordination": measure.coordinationNumbers(ids),
+		**dict(more),
 	}
 	vtk.write(path, arrays.positions(ids), pointData=data)
 
@@ -33,12 +34,15 @@ class Frames:
 		self.folder = pathlib.Path(out) / "vtk"
 		self.written = [tuple(frame) for frame in before]
 
-	def write(self, scene, grains, startRadius):
-		"""Add the present state to both series; ``startRadius``: mean radius of the lateral boundary when the stage began [m]."""
+	def write(self, scene, grains, startRadius, grainArrays=()):
+		"""Add the present state to both series.
+
+		:param startRadius: mean radius of the lateral boundary when the stage began [m]. :param grainArrays: further arrays of the grains by name.
+		"""
 		self.folder.mkdir(exist_ok=True)
 		number = len(self.written)
 		boundary = scene.lateralBoundary
-		writeGrains(self.folder / f"grains-{number:04d}.vtp", grains, scene.measure)
+		writeGrains(self.folder / f"grains-{number:04d}.vtp", grains, scene.measure, grainArrays)
 		surface = boundary.surface(startRadius)
 		vtk.write(self.folder / f"{boundary.name}-{number:04d}.vtp", surface.points, surface.triangles, surface.pointData, surface.cellData)
 		self.written.append((O.time, number))

@@ -6,7 +6,6 @@ checkpoint and goes on. Strains count from the start of the row's stage (``stage
 """
 
 import contextlib
-import dataclasses
 import errno
 import hashlib
 import math
@@ -15,20 +14,7 @@ import pathlib
 
 import numpy
 
-
-@dataclasses.dataclass(frozen=True)
-class Column:
-	"""One column; ``doc`` says sign, formula and source; ``optional``: may be nan."""
-
-	name: str
-	unit: str
-	doc: str
-	optional: bool = False
-
-	@property
-	def header(self):
-		return f"{self.name} [{self.unit}]" if self.unit else self.name
-
+from hexmembrane.output.tables import Column
 
 COLUMNS = (
 	Column("stage", "", "consolidation or shear"),

@@ -2,9 +2,12 @@
 """Grains and lateral boundary as VTK XML files (.vtp) with a .pvd time series, for ParaView; written by VTK's own writer.
 
 Arrays of the grains' points: id, radius [m], velocity [m/s], displacement [m] since the first frame, coordination (contacts
-with a normal force, all partners). Of the membrane's points (sphere centres): id, group, radius [m], velocity [m/s],
+with a normal force, all partners); with local strain measured (``measure``) also void_ratio, volumetric, deviatoric, rotation [rad], non_affine [m2] of the
+last step, volumetric_sum, deviatoric_sum, rotation_sum since shear began (:data:`hexmembrane.measure.local.FIELDS`), mean_stress and shear_stress [Pa] of
+the cell, sqrt(3/2 s:s) of the deviator s. Of the membrane's points (sphere centres): id, group, radius [m], velocity [m/s],
 displacement [m], normal_displacement [m] since the first frame along the first frame's outward normal (outward positive),
-pressure [Pa] on the particle (positive inwards, 0 on the O-ring rows); of its triangles: group (the least of the corners').
+pressure [Pa] on the particle (positive inwards, 0 on the O-ring rows); of its triangles: group (the least of the corners'), pressure [Pa] (mean of the corners'),
+hoop_strain, axial_strain [-], hoop_tension, axial_tension [N/m], see :func:`hexmembrane.scene.sheet_state.sheetState`.
 Of a rigid wall's points: pressure [Pa], normal_displacement [m], outward positive.
 """
 

@@ -13,6 +13,7 @@ import os
 import pathlib
 import re
 import sys
+import typing
 
 import hexmembrane
 
@@ -66,6 +67,7 @@ class Checkpoint:
 	:param frames: (time [s], number) of each VTK frame.
 	:param reference: fields of :class:`hexmembrane.measure.rows.Reference`.
 	:param elapsed: wall clock so far [s].
+	:param inside: what :meth:`hexmembrane.run.inside.Inside.position` gave, None: nothing was measured inside.
 	"""
 
 	state: str
@@ -76,6 +78,7 @@ class Checkpoint:
 	frames: list
 	reference: dict
 	elapsed: float
+	inside: typing.Optional[dict] = None
 
 
 @dataclasses.dataclass
@@ -243,6 +246,8 @@ class _Reader:
 		self.frames(f"{key}.frames", value["frames"])
 		self.reference(f"{key}.reference", value["reference"])
 		self.number(f"{key}.elapsed", value["elapsed"], 0)
+		if not (value["inside"] is None or isinstance(value["inside"], dict)):
+			self.wrong(f"{key}.inside", value["inside"], "is no JSON object")
 		return Checkpoint(**{**value, "records": self.entry(f"{key}.records", value["records"])})
 
 	def frames(self, key, value):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A whole test from one configuration: ``run(config, out)``."""
 
+import contextlib
 import pathlib
 import sys
 
@@ -187,7 +188,7 @@ def _run(config, budget, settled, store, until, start, quiet, say, tell):
 		if until == "boundary":
 			test.checkpoint("generated")
 			return test
-	with test.records:
+	with test.records, contextlib.closing(test.inside):
 		return _stages(test, until, say)
 
 

@@ -17,6 +17,7 @@ from hexmembrane.measure import rows
 from hexmembrane.output.frames import Frames
 from hexmembrane.output.records import Records
 from hexmembrane.run.checkpoints import RECORDS, Store
+from hexmembrane.run.inside import Inside
 from hexmembrane.run.manifest import Checkpoint, Entry
 from hexmembrane.run.pressure_watch import PressureWatch
 from hexmembrane.run.progress import Progress
@@ -46,7 +47,8 @@ class TriaxialTest:
 	"""A test whose specimen and lateral boundary are in ``O`` (see :func:`hexmembrane.scene.builder.build`).
 
 	Attributes: ``config``, ``out``, ``quiet`` (see below); ``scene`` and ``grains`` (handles), ``stage`` (name), ``rowCount`` (rows of the stage so
-	far), ``lastRow`` (a dict by column of the records), ``stageStart`` (step and time), ``reference`` (what strains count from), ``records``, ``frames``.
+	far), ``lastRow`` (a dict by column of the records), ``stageStart`` (step and time), ``reference`` (what strains count from), ``records``, ``frames``,
+	``inside`` (what the configuration's ``measure`` asks for).
 
 	:param config: checked configuration.
 	:param out: existing folder for all files.
@@ -64,6 +66,7 @@ class TriaxialTest:
 		if resumed is None:
 			self.stageStart, self.reference = {"step": O.iter, "time": O.time}, rows.Reference.of(self.scene)
 			self.frames, self.records = Frames(self.out), Records(self.out / RECORDS)
+			self.inside = Inside(config, self.out)
 		else:
 			self._goOnFrom(resumed)
 		self._clock = time.monotonic()
@@ -73,6 +76,7 @@ class TriaxialTest:
 		self.stage, self.rowCount, self.lastRow, self._earlier = checkpoint.stage, resumed.rows, resumed.last, checkpoint.elapsed
 		self.stageStart, self.reference = checkpoint.begun, rows.Reference(**checkpoint.reference)
 		self.frames, self.records = Frames(self.out, checkpoint.frames), Records(self.out / RECORDS, checkpoint.records.size)
+		self.inside = Inside(self.config, self.out, checkpoint.inside)
 		self.scene.guard.checkpoint = str(self.out / checkpoint.state)
 
 	# What both stages share
@@ -127,7 +131,15 @@ class TriaxialTest:
 			)
 		self.records.append(self.lastRow)
 		self.rowCount += 1
+		if self.stage == "shear":
+			self._measureInside()
 		return self.lastRow
+
+	def _measureInside(self):
+		try:
+			self.inside.row(self.scene, self.lastRow, self.rowCount - 1)
+		except (RuntimeError, ValueError) as error:
+			raise StageError(f"measure, in step {O.iter}: {self._torn()}{error}") from None
 
 	def checkpoint(self, name=None):
 		"""Save the state: as ``name``.yade.gz, kept; else uncompressed, which takes a third of the time, until two later ones are there.
@@ -141,7 +153,7 @@ class TriaxialTest:
 			entry = image.write(self.out / state)
 			records = Entry(self.records.position(), self.records.sha256)
 			elapsed = round(self.elapsed(), 2)
-			made = Checkpoint(state, self.stage, O.iter, self.stageStart, records, list(self.frames.written), vars(self.reference), elapsed)
+			made = Checkpoint(state, self.stage, O.iter, self.stageStart, records, list(self.frames.written), vars(self.reference), elapsed, self.inside.position())
 			self.store.add(made, entry)
 			if self.scene.loop is None:
 				image.load(self.out / state)
@@ -356,7 +368,7 @@ class TriaxialTest:
 
 	def _frame(self):
 		if self.config.output.vtkEvery:
-			self.frames.write(self.scene, self.grains, self.reference.radius)
+			self.frames.write(self.scene, self.grains, self.reference.radius, self.inside.grainArrays)
 
 	def _checkpointDue(self):
 		every = self.config.output.checkpointEvery

@@ -15,6 +15,7 @@ from yade import O
 from hexmembrane.scene import geometry, timestep
 from hexmembrane.scene.lateral_boundary import BoundaryParts, LateralBoundary, Surface, optionalEngine, singleEngine
 from hexmembrane.scene.membrane_loads import endHeights, endRows, membraneLoads
+from hexmembrane.scene.sheet_state import sheetState
 
 #: What a sheet holds, by measurement: pressure times grain radius over E t, whatever D is; sag that D allows over the grain radius, whatever E t is.
 MOST_STRETCHED, MOST_SAG = 0.25, 0.05
@@ -130,6 +131,7 @@ class FlexibleMembrane(LateralBoundary):
 		self.oRings = singleEngine(engines, "MembraneORings")
 		self.membrane = self.bonds.membrane
 		self._triangles = numpy.array([tuple(t) for t in self.membrane.triangles])
+		self._bonds = numpy.array([tuple(bond) for bond in self.membrane.bonds])
 		self._group = numpy.array(self.membrane.groups, dtype=numpy.int32)
 		self._endRows = endRows(self.membrane)
 		self._moving = [i for i, group in zip(self.membrane.ids, self._group) if group != 1]
@@ -300,4 +302,7 @@ class FlexibleMembrane(LateralBoundary):
 			"normal_displacement": (u * geometry.normals(x - u, triangles)).sum(axis=1),
 			"pressure": numpy.where(group == 1, 0.0, numpy.where(group == 2, beside, self.appliedPressure)),
 		}
-		return Surface(x, triangles, points, {"group": group[triangles].min(axis=1)})
+		forces = numpy.array(self.bonds.normalForces())
+		cells = sheetState(x, triangles, membrane.perRing, 2 * membrane.sphereRadius, self._bonds, forces)
+		cells.update(group=group[triangles].min(axis=1), pressure=points["pressure"][triangles].mean(axis=1))
+		return Surface(x, triangles, points, cells)
