@@ -49,7 +49,7 @@ def load(path):
 
 def _layers(path, above):
 	"""(keys of the file and its bases, folder that relative paths count from); ``above``: the files that it is a base of."""
-	keys = _read(path)
+	keys = readYaml(path)
 	if not isinstance(keys, dict) or "base" not in keys:
 		return keys, path.parent
 	changes = {name: value for name, value in keys.items() if name != "base"}
@@ -68,8 +68,12 @@ def _layers(path, above):
 	return merged(below, changes), path.parent
 
 
-def _read(path):
-	"""What the YAML file says."""
+def readYaml(path):
+	"""What a YAML file says; a key given twice is an error.
+
+	:param path: pathlib.Path of the file.
+	:raises ConfigError: it cannot be read or is no YAML.
+	"""
 	try:
 		text = path.read_text(encoding="utf-8")
 	except OSError as error:
