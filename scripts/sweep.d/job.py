@@ -123,8 +123,7 @@ class Job:
 		"""Run the stage until it is done or has failed for good; its result."""
 		before = self.before()
 		if before and before["status"] == "failed":
-			said = before["error"]
-			return self.result("failed", said if said.startswith("specimen: ") else f"{self.plan['jobs'][self.job['before']]['stage']}: {said}", 0, 0.0)
+			return {**self.result("failed", before["error"], 0, 0.0), "failed_in": before["failed_in"]}
 		self.folder.mkdir(parents=True, exist_ok=True)
 		(self.folder / "job.yaml").write_text(_configuration(self.job["config"], self.base), encoding="utf-8")
 		started, anew, error = time.monotonic(), False, ""
@@ -148,6 +147,7 @@ class Job:
 		return {
 			"status": status,
 			"error": error,
+			"failed_in": self.stage if status == "failed" else "",
 			"attempts": attempts,
 			"seconds": round(seconds, 2),
 			"bytes": product.stat().st_size if product.is_file() else 0,
