@@ -4,7 +4,7 @@
 # started by the root's own loader), with the host's files at their usual places (enterRoot).
 
 # Raised when the way the root is made changes, so that older ones are made anew.
-rootRecipe=1
+rootRecipe=2
 
 rootHash() { { echo "$rootRecipe $yadeVersion" && listOf packages && listOf root-only && listOf leftout && listOf excludes; } | sha256sum | cut -c 1-12; }
 
@@ -153,6 +153,9 @@ finishRoot() {
 	echo /usr/lib/x86_64-linux-gnu/openblas-pthread >"$tree/etc/ld.so.conf.d/openblas.conf"
 	for name in passwd group hosts resolv.conf; do [[ -e $tree/etc/$name ]] || : >"$tree/etc/$name"; done
 	[[ -f /etc/localtime && ! -e $tree/etc/localtime ]] && : >"$tree/etc/localtime"
+	# Snakemake imports a library that wants the authorities' certificates, whether or not it talks to anybody.
+	mkdir -p "$tree/etc/ssl/certs"
+	cat "$tree"/usr/share/ca-certificates/mozilla/*.crt >"$tree/etc/ssl/certs/ca-certificates.crt"
 	enterRoot "$tree"
 	local writable=("${entry[@]/#--ro-bind/--bind}")
 	"${writable[@]}" true 2>"$work/enter.log" || dieWithoutNamespaces "$(tail -n 1 "$work/enter.log")"

@@ -12,7 +12,9 @@ import subprocess
 import sys
 import time
 
-import archive
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+import archive  # noqa: E402
 import job
 import plan as plans
 import results
