@@ -17,13 +17,13 @@ NAME, STAGES_FOLDER, INPUTS, RESULT = "plan.json", "stages", "inputs", "result.j
 #: Time of one particle in one step [s] on one thread: the compact tier with its membrane, and YADE's own loop. Rough, pkg/compact/README.md has the measurements.
 PARTICLE_STEP = {"compact": 2e-7, "reference": 1.5e-6}
 #: Start of YADE, plots and files of a stage [s].
-_START = 3.0
+_START = 4.0
 #: Ramps of the pressure that a consolidation takes in all, until it is at rest.
 _RAMPS = 2.0
 #: Share of the grains' critical step that a membrane's spheres leave.
 _MEMBRANE_SHARE = 0.6
 #: Bytes of a particle in a kept state, in the two checkpoints that are kept, in a packing; bytes of a row and of a picture.
-_STATE, _CHECKPOINTS, _PACKING, _ROW, _PICTURE = 450, 3000, 90, 800, 150000
+_STATE, _CHECKPOINTS, _PACKING, _ROW, _PICTURE = 250, 1500, 90, 800, 150000
 
 
 def _settled(config):
@@ -74,7 +74,7 @@ def _keys(config, inputs):
 
 
 def make(study):
-	"""The plan of a :class:`study.Study` as plain values, and its input files: place under the plan's folder -> file."""
+	"""The plan of a :class:`studyfile.Study` as plain values, and its input files: place under the plan's folder -> file."""
 	runs, jobs, inputs = [], {}, {}
 	for run in study.runs:
 		radii = _settled(run.config)

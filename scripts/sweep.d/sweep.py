@@ -18,7 +18,7 @@ import archive  # noqa: E402
 import job
 import plan as plans
 import results
-import study
+import studyfile
 from hexmembrane.configuration import ConfigError
 from hexmembrane.run.progress import Progress, clock
 
@@ -208,7 +208,7 @@ def main(argv):
 	try:
 		if arguments.verify:
 			return verify(arguments, say)
-		made = study.load(arguments.study)
+		made = studyfile.load(arguments.study)
 		plan, inputs = plans.make(made)
 		folder = pathlib.Path(arguments.out or pathlib.Path("out", "sweep", pathlib.Path(arguments.study).name.removesuffix(".yaml"))).absolute()
 		if arguments.dry_run:
