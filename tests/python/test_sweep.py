@@ -50,7 +50,7 @@ def write(folder, **study):
 	"""study.yaml in the folder, with base.yaml beside it."""
 	(folder / "sand.csv").write_text(GRADATION)
 	(folder / "base.yaml").write_text(yaml.safe_dump(BASE))
-	(folder / "study.yaml").write_text(yaml.safe_dump({"base": "base.yaml", **study}))
+	(folder / "study.yaml").write_text(yaml.safe_dump({"base": "base.yaml", **study}, sort_keys=False))
 	return folder / "study.yaml"
 
 
@@ -149,7 +149,7 @@ def test_accuracyIsSettledBeforeAnythingIsNamed(tmp_path):
 	],
 )
 def test_badStudies(tmp_path, study, message):
-	with pytest.raises(ConfigError, match=message + ".*; fix: "):
+	with pytest.raises(ConfigError, match=message):
 		studyfile.load(write(tmp_path, **study))
 
 
