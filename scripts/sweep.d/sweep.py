@@ -112,7 +112,8 @@ def _run(plan, folder, arguments):
 					return child.returncode
 				time.sleep(_LOOK)
 		finally:
-			_end(child)
+			if child.poll() is None:
+				_end(child)
 
 
 def _lock(folder):
