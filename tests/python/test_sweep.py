@@ -229,7 +229,7 @@ def alive(pid):
 		return False
 
 
-def wait(what, seconds=60):
+def wait(what, seconds=300):
 	"""Until ``what()`` is true; what it gives."""
 	end = time.monotonic() + seconds
 	while not (found := what()):
