@@ -102,7 +102,8 @@ void MembraneFacetContact::forEachSupport(const VisitSupport& visit) const
 	if (!kernel) return;
 	for (const Contact& contact : kernel->touching())
 		for (int c = 0; c < 3; ++c)
-			if (contact.shares[c] > 0) visit(contact.corners[c], contact.id, contact.normal, contact.shares[c] * builtStiffness);
+			if (contact.shares[c] > 0)
+				visit(contact.corners[c], contact.id, contact.normal, contact.shares[c] * contact.stiffness * builtStiffness);
 }
 
 const hexmembrane::FacetContact& MembraneFacetContact::computed(const char* what) const
@@ -141,8 +142,13 @@ Real MembraneFacetContact::criticalTimeStep() const
 	if (!kernel || kernel->touching().empty()) return std::numeric_limits<Real>::infinity();
 	const Scene& scene = currentScene();
 	Real perMass = kernel->largestShare() / membrane->body(scene, 0, who)->state->mass;
-	for (const Contact& contact : kernel->touching())
-		if (const Body* grain = livingBody(*scene.bodies, contact.id)) perMass = std::max(perMass, 1 / grain->state->mass);
+	Real ofGrain = 0; // sum over its contacts, which stand together
+	Body::id_t last = -1;
+	for (const Contact& contact : kernel->touching()) {
+		ofGrain = (contact.id == last ? ofGrain : 0) + contact.stiffness;
+		last = contact.id;
+		if (const Body* grain = livingBody(*scene.bodies, contact.id)) perMass = std::max(perMass, ofGrain / grain->state->mass);
+	}
 	return 2 / math::sqrt(2 * builtStiffness * perMass);
 }
 

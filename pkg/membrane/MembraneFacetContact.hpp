@@ -55,8 +55,9 @@ private:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneFacetContact,GlobalEngine,
 		"Contact of grains with the sheet between the particles of a :yref:`HexMembrane`: a grain does not press itself through a stretched mesh. Stands before :yref:`NewtonIntegrator`; no collider is needed.\n\n"
-		"The sheet is the triangles of the particles' centres, thickened by the offset $h$. A grain of radius $r$ whose centre is at the distance $d$ from the nearest point of the sheet is pushed away from it with $F=k_n(r+h-d)$, without friction or damping: one contact a grain. "
-		"The triangle's corners take the reaction by that point's barycentric weights; forces and moments balance. A centre that is past the sheet by less than $h$ is pushed back inwards.\n\n"
+		"The sheet is the triangles of the particles' centres, thickened by the offset $h$. A grain of radius $r$ whose centre is at the distance $d$ from the nearest point of the sheet is pushed away from it with $F=k_n(r+h-d)$, without friction or damping. "
+		"Where it reaches several triangles, by the overlaps $o_i=r+h-d_i$, the energy is $k_nO^2/2$ with $O=(\\sum o_i^4)^{1/4}$ and each pushes by its part of the gradient, so that a hollow between triangles has no ridge. "
+		"A triangle's corners take the reaction by the barycentric weights of its nearest point; forces and moments balance. A centre that is past the sheet by less than $h$ is pushed back inwards.\n\n"
 		"A triangle acts while its longest edge is above $\\sqrt{3((0.9R+r)^2-(r+h)^2)}$ with $r$ the smallest grain's radius: below it the particles themselves keep such grains away. With $h=R/4$ that is a stretch of 1.10 for $R/r=1.5$ and 1.33 for 0.8. "
 		"It does not act beside a broken bond: a torn sheet leaks.\n\n"
 		"Its contacts are counted wherever contacts are, each as one of every particle that takes a share. With :yref:`O.trackEnergy<Omega.trackEnergy>` the elastic energy is entered as 'elastFacet'. "
@@ -70,9 +71,9 @@ private:
 		,/*ctor*/,
 		.add_property("normalStiffness",&MembraneFacetContact::normalStiffness,"Stiffness of a contact [N/m], as given or from the material.")
 		.add_property("usedOffset",&MembraneFacetContact::usedOffset,"$h$ [m], as given or $R/4$.")
-		.add_property("grains",&MembraneFacetContact::grains,"Ids of the grains that touched at the last step, ascending.")
+		.add_property("grains",&MembraneFacetContact::grains,"Ids of the grains that touched at the last step, ascending, once for each triangle that a grain reached.")
 		.add_property("triangles",&MembraneFacetContact::triangles,"The triangle that each of :yref:`grains<MembraneFacetContact.grains>` touched, as indices into :yref:`HexMembrane.ids`.")
-		.add_property("overlaps",&MembraneFacetContact::overlaps,"Overlap $r+h-d$ of each [m].")
+		.add_property("overlaps",&MembraneFacetContact::overlaps,"Force of each over $k_n$ [m]: the overlap $r+h-d$ where the grain reached one triangle.")
 		.add_property("listsMade",&MembraneFacetContact::listsMade,"Times that the lists of triangles and near grains were made since the engine was made or loaded.")
 		.def("elasticEnergy",&MembraneFacetContact::elasticEnergy,"Elastic energy of all contacts [J] at the last step.")
 		.def("criticalTimeStep",&MembraneFacetContact::criticalTimeStep,"Critical time step [s] of the contacts of the last step alone, $2/\\omega$ with $\\omega^2\\leq2k_n\\max(1/m_g,w/m)$, $m_g$ the lightest grain's mass that touches and $w$ the largest sum of shares of a particle of mass $m$: a lower bound. inf while nothing touches; a contact that is made later shortens it.")

@@ -15,12 +15,12 @@ import unittest.mock
 import numpy
 from hexmembrane.configuration import Config, ConfigError
 from hexmembrane.output import records, vtk
-from hexmembrane.run import stages
+from hexmembrane.run import checkpoints, stages
 from hexmembrane.run.pipeline import run as runTest
 from yade import BodyArrays, O
 
 #: Files of text in which a number that is not finite would be seen.
-TEXTS = ("*.txt", "*.yaml", "checkpoint.json")
+TEXTS = ("*.txt", "*.yaml", "manifest.json")
 
 
 class Watched(stages.TriaxialTest):
@@ -64,9 +64,9 @@ def whole(case, config, out, resume=False, killAfter=None, kill=os._exit):
 		except ConfigError as error:
 			outcome, message = "refused", str(error)
 		except ValueError as error:
-			outcome, message = ("stopped" if (pathlib.Path(out) / "checkpoint.json").is_file() else "refused"), str(error)
+			outcome, message = ("stopped" if checkpoints.exist(out) else "refused"), str(error)
 		except RuntimeError as error:
-			outcome, message = ("stopped" if (pathlib.Path(out) / "checkpoint.json").is_file() else "refused"), str(error)
+			outcome, message = ("stopped" if checkpoints.exist(out) else "refused"), str(error)
 	seen["not finite"] = notFinite(pathlib.Path(out))
 	if outcome == "done":
 		seen.update(measured(pathlib.Path(out), seen))

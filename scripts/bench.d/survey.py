@@ -14,6 +14,7 @@ import sys
 import yaml
 
 from hexmembrane.configuration import merged
+from hexmembrane.run import checkpoints
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 QUICK = ROOT / "examples" / "quick.yaml"
@@ -50,7 +51,7 @@ def run(name, keys, folder):
 		file = folder / f"{out.name}.yaml"
 		file.write_text(yaml.safe_dump(keys))
 		program = [sys.executable, str(ROOT / "scripts" / "setup.d" / "launch.py"), "1", str(ROOT / "py" / "hexmembrane" / "__main__.py")]
-		arguments = [str(file), "--out", str(out), *(["--resume"] if (out / "checkpoint.json").is_file() else [])]
+		arguments = [str(file), "--out", str(out), *(["--resume"] if checkpoints.exist(out) else [])]
 		with open(out / "said.txt", "a") as said:
 			ended = subprocess.run([*program, *arguments], stdout=said, stderr=subprocess.PIPE, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
 		if ended.returncode in ENDED:

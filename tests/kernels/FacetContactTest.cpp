@@ -41,6 +41,15 @@ struct Filled {
 	}
 };
 
+/// The grains that touch, each once.
+std::vector<int> grainsOf(const FacetContact& facets)
+{
+	std::vector<int> all;
+	for (const auto& contact : facets.touching())
+		if (all.empty() || all.back() != contact.grain) all.push_back(contact.grain);
+	return all;
+}
+
 Vec3 inwardsOf(const HexLattice& tube, const std::array<int, 3>& t)
 {
 	const Vec3 a = tube.positions[t[0]];
@@ -81,16 +90,15 @@ TEST(FacetContact, equalsTheOracle)
 		const auto slow = s.slow(true);
 		ASSERT_GT(slow.grains.size(), 100u);
 		EXPECT_GT(slow.pushedBack, 3);
-		ASSERT_EQ(fast.touching().size(), slow.grains.size());
+		EXPECT_EQ(grainsOf(fast), slow.grains);
+		EXPECT_GT(fast.touching().size(), slow.grains.size() + 10); // some reach several triangles
 		std::vector<Vec3> onGrain(s.grains.size(), Vec3::Zero());
-		for (size_t c = 0; c < slow.grains.size(); ++c) {
-			const auto& contact = fast.touching()[c];
-			EXPECT_EQ(contact.grain, slow.grains[c]);
-			EXPECT_EQ(contact.id, 1000 + slow.grains[c]);
-			onGrain[contact.grain] = kn * contact.overlap * contact.normal;
+		for (const auto& contact : fast.touching()) {
+			EXPECT_EQ(contact.id, 1000 + contact.grain);
+			onGrain[contact.grain] += kn * contact.overlap * contact.normal;
 		}
-		EXPECT_LT(support::relativeDifference(onGrain, slow.onGrain), 1e-9);
-		EXPECT_LT(support::relativeDifference(fast.force.vectors(), slow.onParticle), 1e-9);
+		EXPECT_LT(support::relativeDifference(onGrain, slow.onGrain), 1e-7); // slopes by differences
+		EXPECT_LT(support::relativeDifference(fast.force.vectors(), slow.onParticle), 1e-7);
 		EXPECT_NEAR(fast.energy() / slow.energy, 1, 1e-9);
 	}
 }
@@ -103,8 +111,8 @@ TEST(FacetContact, equalsTheOracleBesideTrianglesThatDoNotAct)
 	s.compute(fast);
 	const auto slow = s.slow(false);
 	ASSERT_GT(slow.grains.size(), 30u);
-	ASSERT_EQ(fast.touching().size(), slow.grains.size());
-	EXPECT_LT(support::relativeDifference(fast.force.vectors(), slow.onParticle), 1e-9);
+	EXPECT_EQ(grainsOf(fast), slow.grains);
+	EXPECT_LT(support::relativeDifference(fast.force.vectors(), slow.onParticle), 1e-7);
 }
 
 TEST(FacetContact, addsUpToNothingAndIsMinusTheGradientOfItsEnergy)
@@ -141,10 +149,13 @@ TEST(FacetContact, addsUpToNothingAndIsMinusTheGradientOfItsEnergy)
 	const double step = 1e-9;
 	for (size_t c = 0; c < kernel.touching().size(); c += 17) {
 		const auto& contact = kernel.touching()[c];
-		const double f = kn * contact.overlap;
+		Vec3 onGrain = Vec3::Zero();
+		for (const auto& other : kernel.touching())
+			if (other.grain == contact.grain) onGrain += kn * other.overlap * other.normal;
+		const double f = onGrain.norm();
 		for (int a = 0; a < 3; ++a) {
 			const auto slope = [&](Vec3& moved) { return -(energyWith(moved, a, step) - energyWith(moved, a, -step)) / (2 * step); };
-			EXPECT_NEAR(f * contact.normal[a], slope(s.grains[contact.grain].centre), 1e-4 * f) << "contact " << c;
+			EXPECT_NEAR(onGrain[a], slope(s.grains[contact.grain].centre), 1e-4 * f) << "contact " << c;
 			EXPECT_NEAR(force[contact.corners[0]][a], slope(s.tube.positions[contact.corners[0]]), 1e-4 * f) << "contact " << c;
 		}
 	}
@@ -189,7 +200,38 @@ TEST(FacetContact, energyIsContinuousAlongWaysAcrossEdgesAndThroughTheSheet)
 	// wholly outside, it is kept there
 	s.grains[0].centre = middle - 1.1 * h * inwards;
 	s.compute(kernel);
-	EXPECT_LT(kernel.touching().at(0).normal.dot(inwards), -0.99);
+	Vec3 push = Vec3::Zero();
+	for (const auto& contact : kernel.touching()) push += contact.overlap * contact.normal;
+	EXPECT_LT(push.normalized().dot(inwards), -0.99);
+}
+
+TEST(FacetContact, aGrainInAHollowComesToRest)
+{
+	// two triangles at an angle and a grain pressed into the edge between them: with the nearest triangle alone it is thrown to and fro for ever
+	Filled s = stretched(1.5, 1.5, 11);
+	const size_t t = 2 * size_t(s.tube.perRing) * (s.tube.rings / 2);
+	const auto corner = s.tube.triangles[t];
+	const Vec3 inwards = inwardsOf(s.tube, corner);
+	const double r = smallestOf(s.tube), h = offsetOf(s.tube), push = 0.05 * kn * r, mass = 1e-6, dt = 0.5 * std::sqrt(mass / kn);
+	const Vec3 edge = 0.5 * (s.tube.positions[corner[0]] + s.tube.positions[corner[1]]);
+	for (const int v : {corner[0], corner[1]}) s.tube.positions[v] -= 0.8 * s.tube.sphereRadius * inwards; // a valley along their bond
+	s.grains.clear();
+	s.ids.clear();
+	s.put(edge + (r + h - 0.7 * s.tube.sphereRadius) * inwards, r);
+	FacetContact kernel = s.kernel();
+	Vec3 velocity = Vec3::Zero();
+	size_t reached = 0;
+	for (int step = 0; step < 4000; ++step) {
+		s.compute(kernel);
+		Vec3 force = -push * inwards;
+		for (const auto& contact : kernel.touching()) force += kn * contact.overlap * contact.normal;
+		reached = kernel.touching().size();
+		for (int a = 0; a < 3; ++a) force[a] *= force[a] * velocity[a] > 0 ? 0.8 : 1.2; // local damping
+		velocity += force / mass * dt;
+		s.grains[0].centre += velocity * dt;
+	}
+	EXPECT_GE(reached, 2u);
+	EXPECT_LT(mass * velocity.norm() / dt, 1e-3 * push);
 }
 
 TEST(FacetContact, isNotReachedAtRest)
@@ -334,7 +376,7 @@ TEST(FacetContact, largestShareIsOfTheParticleThatBearsMost)
 	s.compute(kernel);
 	std::vector<double> shares(s.tube.particles(), 0);
 	for (const auto& contact : kernel.touching())
-		for (int c = 0; c < 3; ++c) shares[contact.corners[c]] += contact.shares[c];
+		for (int c = 0; c < 3; ++c) shares[contact.corners[c]] += contact.shares[c] * contact.stiffness;
 	EXPECT_EQ(kernel.largestShare(), *std::max_element(shares.begin(), shares.end()));
 	EXPECT_GT(kernel.largestShare(), 0.3);
 }

@@ -21,6 +21,8 @@ WITHOUT_YADE = (
 	"output.vtk",
 	"output.plots",
 	"run.checkpoints",
+	"run.lock",
+	"run.manifest",
 	"run.progress",
 )
 

@@ -152,4 +152,4 @@ def test_targetOutOfReach(tmp_path, runHere, boundary, limit):
 		assert code == 1 and "YADE stopped before step" in errors and errors.count("fix: ") == 2
 		assert f"SoilStressServo.timeLimit = {limit:g}: the soil's axial stress is " in errors
 		assert first in said or first == "generated"
-		assert (tmp_path / "out" / "checkpoint.json").is_file()
+		assert (tmp_path / "out" / "manifest.json").is_file()

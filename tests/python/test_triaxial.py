@@ -216,7 +216,7 @@ def test_notAtRest(tmp_path, runHere):
 	code, _, errors = runHere(configure(tmp_path, consolidation=strict, output=quick), "--out", tmp_path / "out")
 	assert code == 1
 	assert "consolidation.maxSteps = 400: not at rest after 400 steps" in errors and "; fix: " in errors
-	assert (tmp_path / "out" / "checkpoint.json").is_file()
+	assert (tmp_path / "out" / "manifest.json").is_file()
 	path = configure(tmp_path, consolidation={**strict, "maxSteps": 600}, output=quick)
 	code, said, errors = runHere(path, "--out", tmp_path / "out", "--resume")
 	assert code == 1 and "not at rest after 600 steps" in errors and "resumed in consolidation" in said
@@ -239,7 +239,7 @@ BAD = [
 	({"membrane": {"oRingRows": 2, "platenRows": 7}}, [], 1, "HexMembrane.platenRows = "),
 	({"numerics": {"dt": 1.0}}, [], 1, "numerics.dt = 1 s: is above the critical time step"),
 	({}, ["--resume"], 2, "there is none"),
-	({}, ["--from", "gone.yade.gz"], 1, "no such file"),
+	({}, ["--from", "gone.yade.gz"], 2, "no such file"),
 	({}, ["--resume", "--from", "gone.yade.gz"], 2, "leave out one"),
 ]
 
@@ -259,7 +259,7 @@ def test_badInput(tmp_path, runHere, changes, arguments, code, message):
 def test_damagedState(tmp_path, runHere):
 	(tmp_path / "bad.yade.gz").write_bytes(b"no state of YADE")
 	code, _, errors = runHere(configure(tmp_path), "--out", tmp_path / "out", "--from", tmp_path / "bad.yade.gz")
-	assert code == 1 and "YADE cannot read it" in errors and "fix: " in errors
+	assert code == 2 and "bad.yade.gz': is damaged" in errors and "fix: " in errors
 
 
 def test_folderInUse(whole, runHere):

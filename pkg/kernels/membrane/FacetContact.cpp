@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace hexmembrane {
 
@@ -18,6 +19,8 @@ namespace {
 constexpr double softness = 0.1;
 /// Share of the skin that may have been gone where it is looked at. What is left of half a skin is for steps in which nobody looks.
 constexpr double measured = 0.25;
+
+double fourth(double x) { return x * x * x * x; }
 
 /// Weights of the point of a triangle that is nearest to c. Exactly 0 for corners that it does not depend on.
 std::array<double, 3> nearestWeights(const Vec3& c, const std::array<Vec3, 3>& corner)
@@ -54,6 +57,11 @@ struct FacetContact::Foot {
 	std::array<double, 3> weights{};
 	Vec3 point = Vec3::Zero();
 	double square = std::numeric_limits<double>::infinity(); ///< of its distance (m2)
+};
+
+/// What a triangle carries of a grain: see Contact.
+struct FacetContact::Part {
+	double overlap, squared, stiffness;
 };
 
 double FacetContact::actingLength(double radius, double offset, double grain)
@@ -151,19 +159,62 @@ bool FacetContact::surrounded(const Foot& foot, Vec3& normal) const
 	return round > 0.99;
 }
 
-void FacetContact::touch(int grain, const SphereRows& rows, const Foot& foot)
+void FacetContact::add(int grain, const SphereRows& rows, const Foot& foot, const Vec3& normal, double overlap, const Part& part)
 {
-	const double r = rows.places[grain].radius, away = std::sqrt(foot.square);
-	if (!(away < r + h)) return;
-	const Vec3 centre = rows.places[grain].centre, branch = centre - foot.point;
-	Vec3 normal;
-	const bool pushedBack = surrounded(foot, normal) && away < h && branch.dot(normal) < 0;
-	const double distance = pushedBack ? -away : away;
-	if (away > 1e-9 * radius) normal = branch / distance; // else a centre on the sheet
-	const double overlap = r + h - distance;
 	const Triangle& t = triangles[foot.triangle];
-	contacts.push_back(
-	        {grain, rows.ids[grain], t, foot.weights, {at(t[0]), at(t[1]), at(t[2])}, centre, centre - (r - 0.5 * overlap) * normal, normal, overlap});
+	const Place& place = rows.places[grain];
+	const Vec3 point = place.centre - (place.radius - 0.5 * overlap) * normal;
+	contacts.push_back({grain,
+	                    rows.ids[grain],
+	                    t,
+	                    foot.weights,
+	                    {at(t[0]), at(t[1]), at(t[2])},
+	                    place.centre,
+	                    point,
+	                    normal,
+	                    part.overlap,
+	                    part.squared,
+	                    part.stiffness});
+}
+
+/// \param feet of the triangles that the grain reaches
+void FacetContact::touch(int grain, const SphereRows& rows, const std::vector<Foot>& feet)
+{
+	if (feet.empty()) return;
+	const Vec3 centre = rows.places[grain].centre;
+	const double reach = rows.places[grain].radius + h;
+	const auto nearest = std::min_element(feet.begin(), feet.end(), [](const Foot& a, const Foot& b) { return a.square < b.square; });
+	const double least = std::sqrt(nearest->square);
+	if (least <= h) {
+		const Vec3 branch = centre - nearest->point;
+		Vec3 normal;
+		const bool pushedBack = surrounded(*nearest, normal) && branch.dot(normal) < 0;
+		const double distance = pushedBack ? -least : least, overlap = reach - distance;
+		if (least > 1e-9 * radius) normal = branch / distance; // else a centre on the sheet
+		add(grain, rows, *nearest, normal, overlap, {overlap, overlap * overlap, 1});
+		return;
+	}
+	const double most = reach - least;
+	double sum = 0, second = 0;
+	for (auto foot = feet.begin(); foot != feet.end(); ++foot) {
+		const double overlap = reach - std::sqrt(foot->square);
+		sum += fourth(overlap);
+		if (foot != nearest) second = std::max(second, overlap);
+	}
+	const double all = std::sqrt(std::sqrt(sum)), t = std::min((least - h) / h, 1.), fade = t * t * (3 - 2 * t), slope = 6 * t * (1 - t) / h;
+	const double whole = most + fade * (all - most);
+	bool first = true;
+	for (auto foot = feet.begin(); foot != feet.end(); ++foot) {
+		const double overlap = reach - std::sqrt(foot->square), ratio = overlap / all;
+		Part part{fade * ratio * ratio * ratio, first ? whole * whole : 0, 3 * ratio * ratio};
+		if (foot == nearest) {
+			part.overlap += 1 - fade - slope * (all - most);
+			part.stiffness = 1 + 2 * (second / all) * (second / all);
+		}
+		part.overlap *= whole;
+		add(grain, rows, *foot, (centre - foot->point) / std::sqrt(foot->square), overlap, part);
+		first = false;
+	}
 }
 
 bool FacetContact::grainsHold(const SphereRows& rows) const
@@ -241,18 +292,20 @@ void FacetContact::compute(const PaddedRings& position, const std::function<Sphe
 	keepLists(grains, travel);
 	if (near.empty()) return;
 	const SphereRows rows = grains();
+	std::vector<Foot> feet; // of one grain
 	for (std::size_t p = 0; p < near.size();) {
 		const int grain = near[p].grain;
-		Foot nearest;
+		const double reach = rows.places[grain].radius + h;
+		feet.clear();
 		for (; p < near.size() && near[p].grain == grain; ++p) {
 			const int t = near[p].triangle;
 			if (!planeReaches(triangles[t], rows.places[grain]) || !acts(t)) continue;
 			const Foot foot = footOn(t, rows.places[grain].centre);
-			if (foot.square < nearest.square) nearest = foot;
+			if (foot.square < reach * reach) feet.push_back(foot);
 		}
-		if (nearest.triangle >= 0) touch(grain, rows, nearest);
+		touch(grain, rows, feet);
 	}
-	std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) { return a.id < b.id; });
+	std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) { return std::tie(a.id, a.corners) < std::tie(b.id, b.corners); });
 	for (const Contact& contact : contacts)
 		for (int c = 0; c < 3; ++c) {
 			const int ring = contact.corners[c] / n, i = contact.corners[c] % n;
@@ -265,7 +318,7 @@ void FacetContact::compute(const PaddedRings& position, const std::function<Sphe
 double FacetContact::energy() const
 {
 	double sum = 0;
-	for (const Contact& contact : contacts) sum += 0.5 * kn * contact.overlap * contact.overlap;
+	for (const Contact& contact : contacts) sum += 0.5 * kn * contact.squared;
 	return sum;
 }
 
@@ -273,7 +326,7 @@ double FacetContact::largestShare() const
 {
 	std::vector<double> shares(stencil.particles(), 0);
 	for (const Contact& contact : contacts)
-		for (int c = 0; c < 3; ++c) shares[contact.corners[c]] += contact.shares[c];
+		for (int c = 0; c < 3; ++c) shares[contact.corners[c]] += contact.shares[c] * contact.stiffness;
 	return shares.empty() ? 0 : *std::max_element(shares.begin(), shares.end());
 }
 

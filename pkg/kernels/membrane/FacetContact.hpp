@@ -11,8 +11,11 @@
 namespace hexmembrane {
 
 /// Contact of grains with the sheet between the particles of a hexagonal tube: the triangles of their centres, thickened by an offset h. A grain of radius r at
-/// c whose nearest point P of the triangles is at the distance d has one contact, without friction or damping. Its force kn (r + h - d) acts along c - P. The
-/// three corners take the reaction by P's barycentric weights: forces and moments balance, and the forces are minus the gradient of the energy.
+/// c overlaps a triangle whose nearest point P_i is at the distance d_i by o_i = r + h - d_i, and all that it reaches by O = (sum o_i^4)^(1/4). The energy is
+/// kn O^2/2, the force of triangle i kn O (o_i/O)^3 along c - P_i, without friction or damping. The three corners take the reaction by P_i's barycentric
+/// weights: forces and moments balance, and the forces are minus the gradient of the energy. The nearest triangle alone, O = max o_i, would leave a grain in a
+/// hollow between two triangles on a ridge of the force: it would be thrown from one to the other in each step, for ever. Where the centre comes nearer than
+/// 2 h to the sheet, O fades to that of the nearest triangle alone, which it is at h: further in a side counts.
 ///
 /// The side counts only for a centre that is past the sheet by less than h, where its nearest point has triangles that act all round: there d is negative,
 /// and the grain is pushed back inwards. Further out a grain is outside, and the sheet keeps it there: it has leaked, or was put there.
@@ -33,25 +36,27 @@ public:
 	/// \throws FieldError for a grain that is nowhere
 	void compute(const PaddedRings& position, const std::function<SphereRows()>& grains, const Travel& travel = {});
 
-	/// A grain that touches, at the last compute().
+	/// A grain and a triangle that touch, at the last compute().
 	struct Contact {
-		int grain, id;                ///< its index in the rows, its id
+		int grain, id;                ///< the grain's index in the rows, its id
 		std::array<int, 3> corners;   ///< particles
 		std::array<double, 3> shares; ///< of the reaction, by corner; they add up to 1
 		std::array<Vec3, 3> places;   ///< of the corners (m)
 		Vec3 centre;                  ///< of the grain (m)
-		Vec3 point;                   ///< half way through the overlap (m)
+		Vec3 point;                   ///< half way through o_i (m)
 		Vec3 normal;                  ///< unit vector towards the grain
-		double overlap;               ///< (m)
+		double overlap;               ///< force over kn (m)
+		double squared;               ///< O^2 (m2) in the first contact of a grain, 0 in its others
+		double stiffness;             ///< at most, along the normal, over kn
 	};
-	/// By the grains' ids, ascending.
+	/// By the grains' ids, ascending, then by the corners.
 	const std::vector<Contact>& touching() const { return contacts; }
 	/// Rings that touched corners are of, first and last; first > last: none, and no row of `force` was written.
 	int firstRing() const { return first; }
 	int lastRing() const { return last; }
 	/// At the last compute() (J).
 	double energy() const;
-	/// Largest sum of shares of one particle at the last compute().
+	/// Largest sum of shares times stiffness of one particle at the last compute().
 	double largestShare() const;
 	/// Times that the lists were made so far.
 	long listsMade() const { return made; }
@@ -70,6 +75,7 @@ private:
 		int grain, triangle;
 	};
 	struct Foot; ///< nearest point of a triangle
+	struct Part; ///< what a triangle carries of a grain
 
 	Vec3 at(int particle) const { return x->get(particle / stencil.perRing, particle % stencil.perRing); }
 	double longestSquared(const Triangle& t) const;
@@ -78,7 +84,8 @@ private:
 	Vec3 inwards(const Triangle& t) const;
 	Foot footOn(int triangle, const Vec3& centre) const;
 	bool surrounded(const Foot& foot, Vec3& normal) const;
-	void touch(int grain, const SphereRows& rows, const Foot& foot);
+	void touch(int grain, const SphereRows& rows, const std::vector<Foot>& feet);
+	void add(int grain, const SphereRows& rows, const Foot& foot, const Vec3& normal, double overlap, const Part& part);
 	bool grainsHold(const SphereRows& rows) const;
 	void keepLists(const std::function<SphereRows()>& grains, const Travel& travel);
 	void makeLists(const SphereRows& rows);

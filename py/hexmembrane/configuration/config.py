@@ -5,6 +5,7 @@
 """
 
 import dataclasses
+import math
 import pathlib
 from typing import Optional
 
@@ -87,7 +88,12 @@ class Membrane:
 		None, "radius of the membrane's spheres, adjusted so that rings close; none: from sizeRatio", "m", low=0, openLow=True
 	)
 	sizeRatio: float = key(
-		0.8, "R/r, membrane sphere to smallest grain radius, used without particleRadius; Eq. 1 is its upper limit", "", low=0, openLow=True
+		0.8,
+		"R/r, membrane sphere to smallest grain radius, used without particleRadius; from its upper limit on, Eq. 1, a grain passes three spheres that touch",
+		"",
+		low=0,
+		openLow=True,
+		high=3 / (2 * math.sqrt(3) - 3),
 	)
 	placement: str = shared("placement", "inner surface ('outside') or centres ('centred') on the specimen's surface")
 	oRingRows: int = shared("o_ring_rows", "rows at each end, beyond the specimen, held by the O-rings (group 1)", low=1, high=50)

@@ -10,7 +10,8 @@ from yade import O
 
 from hexmembrane import configuration
 from hexmembrane.configuration import ConfigError
-from hexmembrane.run.checkpoints import CheckpointError
+from hexmembrane.run.lock import LockError
+from hexmembrane.run.manifest import CheckpointError
 from hexmembrane.run.pipeline import STAGES, run
 
 
@@ -45,7 +46,7 @@ def main(argv):
 		_restartWithThreads(config.numerics.threads)
 		out = arguments.out or pathlib.Path("out", pathlib.Path(arguments.config).stem)
 		run(config, out, arguments.resume, arguments.until, arguments.start, arguments.quiet)
-	except (ConfigError, CheckpointError) as error:
+	except (ConfigError, CheckpointError, LockError) as error:
 		print(f"error: {error}", file=sys.stderr)
 		return 2
 	except (ValueError, RuntimeError, OSError) as error:

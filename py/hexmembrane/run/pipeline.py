@@ -2,6 +2,7 @@
 """A whole test from one configuration: ``run(config, out)``."""
 
 import pathlib
+import sys
 
 from yade import O
 
@@ -10,37 +11,69 @@ from hexmembrane.configuration import Config, ConfigError, toDict
 from hexmembrane.configuration.schema import freeKeys
 from hexmembrane.output.plots import plot
 from hexmembrane.run import checkpoints, stages
+from hexmembrane.run.checkpoints import FolderError, Store
+from hexmembrane.run.lock import FolderLock
+from hexmembrane.run.manifest import CheckpointError
 from hexmembrane.run.progress import clock
+from hexmembrane.run.states import Image
 from hexmembrane.scene import accuracy, builder, specimen
 from hexmembrane.scene.handles import Scene
 
 STAGES = ("specimen", "boundary", "consolidation", "shear")
 
 
-def _freshFolder(out, resume):
-	"""Make the folder; one that holds a test already is an error unless it is resumed."""
+def _madeFolder(out):
 	out = pathlib.Path(out)
 	try:
 		out.mkdir(parents=True, exist_ok=True)
 	except OSError as error:
 		raise ConfigError("--out", str(out), f"cannot be made ({error.strerror})", "choose another folder") from None
-	if not resume and any((out / name).exists() for name in ("records.csv", "checkpoint.json")):
-		raise ConfigError("--out", str(out), "holds a test already", "choose another folder, empty this one, or give --resume")
 	return out
 
 
-def _sameTest(config, out):
+def _storeOf(out, resume):
+	"""The folder's files, checked."""
+	if not resume:
+		return Store.begin(out)
+	store = Store.existing(out)
+	if not store.begun and store.manifest.files:
+		raise CheckpointError(f"checkpoint = '{out}': has a specimen alone; fix: run in another folder with specimen.packing: {out / 'packing.txt'}")
+	if not store.begun:
+		raise CheckpointError(f"checkpoint = '{out}': there is none yet; fix: the same command without --resume, which begins anew")
+	return store
+
+
+def _sameTest(config, store):
 	"""Check that the folder's test is the one of this configuration."""
-	path = out / "config.yaml"
-	if not path.is_file():
-		raise checkpoints.CheckpointError(f"checkpoint = '{out}': has no config.yaml; fix: run without --resume in another folder")
+	store.require("config.yaml")
+	path = store.folder / "config.yaml"
 	before = configuration.load(path)
 	odd = [name for name in checkpoints.differences(toDict(before), toDict(config)) if name not in freeKeys(Config)]
 	if odd:
-		raise checkpoints.CheckpointError(
-			f"checkpoint = '{out}': was made with other values of {', '.join(odd)}; fix: resume with the configuration "
+		raise CheckpointError(
+			f"checkpoint = '{store.folder}': was made with other values of {', '.join(odd)}; fix: resume with the configuration "
 			f"'{path}', or run without --resume in another folder"
 		)
+
+
+def _goOn(config, store, tell):
+	"""The last whole checkpoint, its state in ``O``; nothing in the folder is changed before all of it is checked."""
+	_sameTest(config, store)
+	resumed = store.last()
+	for warning in resumed.warnings:
+		tell(f"WARNING: {warning}")
+	checkpoint = resumed.checkpoint
+	path = store.folder / checkpoint.state
+	with Image.read(path, store.manifest.states[checkpoint.state]) as image:
+		image.load(path)
+	boundary = Scene().lateralBoundary.name
+	if (O.iter, boundary) != (checkpoint.step, config.boundary):
+		raise CheckpointError(
+			f"state = '{path}': is of step {O.iter} with a {boundary}, the checkpoint is of step {checkpoint.step} with a {config.boundary}; "
+			"fix: put the test's own state back"
+		)
+	store.goOnFrom(resumed)
+	return resumed
 
 
 def _sameState(config):
@@ -83,44 +116,64 @@ def run(config, out, resume=False, until="shear", start=None, quiet=False):
 	:param start: a consolidated state (``consolidated.yade.gz`` of another test) to shear instead of making a specimen.
 	:param quiet: print nothing.
 	:returns: the :class:`hexmembrane.run.stages.TriaxialTest`, None when only the specimen was made.
-	:raises ConfigError, CheckpointError, StageError, ValueError: each with the fix.
+	:raises ConfigError, CheckpointError, LockError, FolderError, StageError, ValueError: each with the fix.
 	"""
 	if until not in STAGES:
 		raise ConfigError("--until", until, "is no stage", f"use {', '.join(STAGES)}")
 	if resume and start is not None:
 		raise ConfigError("--from", str(start), "a resumed test starts from its own checkpoint", "leave out one of --from and --resume")
-	out = _freshFolder(out, resume)
+	out = _madeFolder(out)
 
 	def say(text):
 		if not quiet:
 			print(text, flush=True)
 
+	def tell(text):
+		print(text, file=sys.stderr, flush=True)
+
+	store = None
+	try:
+		with FolderLock(out):
+			store = _storeOf(out, resume)
+			return _run(config, store, until, start, quiet, say, tell)
+	except OSError as error:
+		if error.errno is None or isinstance(error, BrokenPipeError):
+			raise  # it says what is wrong, or is of a stream
+		raise FolderError(error, out, store is not None and store.begun) from None
+
+
+def _run(config, store, until, start, quiet, say, tell):
+	out, resume = store.folder, store.begun
 	if start is not None:
 		_wantOwnSettings(config)
 	budget = _settle(config, (lambda text: None) if resume else say)
 	if resume:
-		facts = checkpoints.read(out)
-		_sameTest(config, out)
-		stages.load(out / facts["state"])
+		resumed = _goOn(config, store, tell)
 		builder.setTier(config)
-		say(f"resumed in {facts['stage']} after {facts['rows']} rows, step {O.iter}")
-		test = stages.TriaxialTest(config, out, quiet, facts)
+		say(f"resumed in {resumed.checkpoint.stage} after {resumed.rows} rows, step {O.iter}")
+		test = stages.TriaxialTest(config, out, quiet, store, resumed)
 	elif start is not None:
 		stages.load(start)
 		_sameState(config)
 		builder.setTier(config)
 		O.trackEnergy = config.output.energy
+		stages.checkRows(config)
 		configuration.save(config, out / "config.yaml", budget=budget.asDict())
-		test = stages.TriaxialTest(config, out, quiet)
+		store.seal("config.yaml")
+		test = stages.TriaxialTest(config, out, quiet, store)
 		test.beginShear()
+		test.checkpoint()
 	else:
 		configuration.save(config, out / "config.yaml", budget=budget.asDict())
 		packing = specimen.provide(config, out, say)
+		store.seal("config.yaml", "packing.txt")
 		if until == "specimen":
+			store.write()
 			return None
 		O.reset()
 		builder.build(config, packing, say)
-		test = stages.TriaxialTest(config, out, quiet)
+		stages.checkRows(config)
+		test = stages.TriaxialTest(config, out, quiet, store)
 		if until == "boundary":
 			test.checkpoint("generated")
 			return test
@@ -133,7 +186,7 @@ def _stages(test, until, say):
 		test.consolidate()
 	if until == "shear":
 		test.shear()
-		picture = test.out / "test.png"
+		picture = test.out / checkpoints.PICTURE
 		plot(test.records.path, picture, test.config.title)
 		say(f"wrote {test.records.path}, {picture}" + (f" and {test.frames.folder}" if test.frames.written else ""))
 	say(f"done in {clock(test.elapsed())}")

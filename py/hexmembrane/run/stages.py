@@ -12,11 +12,14 @@ import time
 
 from yade import BodyArrays, O
 
+from hexmembrane.configuration import ConfigError
 from hexmembrane.measure import rows
 from hexmembrane.output.frames import Frames
 from hexmembrane.output.records import Records
-from hexmembrane.run import checkpoints
+from hexmembrane.run.checkpoints import RECORDS, Store
+from hexmembrane.run.manifest import Checkpoint, Entry
 from hexmembrane.run.progress import Progress
+from hexmembrane.run.states import Image, load
 from hexmembrane.scene import timestep
 from hexmembrane.scene.builder import checkTimeStep
 from hexmembrane.scene.handles import Scene
@@ -25,6 +28,9 @@ from hexmembrane.scene.handles import Scene
 RAMP_PARTS = 100
 #: Share of the pressure that the ramp begins with: servos hold no stress of 0.
 _FIRST = 0.01
+
+#: Share of the height that consolidation may take, for what is checked before it.
+_SHORTER = 0.1
 
 #: Largest inertial number of what counts as quasi-static.
 QUASISTATIC = 1e-3
@@ -43,23 +49,29 @@ class TriaxialTest:
 	:param config: checked configuration.
 	:param out: existing folder for all files.
 	:param quiet: print nothing.
-	:param facts: a checkpoint's facts to go on from (its state loaded); None: begin.
+	:param store: the folder's :class:`hexmembrane.run.checkpoints.Store`; None: one of its own, for a folder that nobody else writes into.
+	:param resumed: what ``store.last()`` gave, its state loaded; None: begin.
 	"""
 
-	def __init__(self, config, out, quiet=False, facts=None):
+	def __init__(self, config, out, quiet=False, store=None, resumed=None):
 		self.config, self.out, self.quiet = config, pathlib.Path(out), quiet
+		self.store = Store(out) if store is None else store
 		self.scene = Scene()
 		self.grains = rows.Grains.of(self.scene.grainIds())
-		facts = facts or {}
-		self.stage = facts.get("stage", "generated")
-		self.rowCount = facts.get("rows", 0)
-		self.stageStart = facts.get("begun", {"step": O.iter, "time": O.time})
-		self.frames = Frames(self.out, facts.get("frames", ()))
-		self.records = Records(self.out / "records.csv", facts.get("bytes"))
-		self.reference = rows.Reference(**facts["reference"]) if "reference" in facts else rows.Reference.of(self.scene)
-		self.lastRow = facts.get("last")
-		self._earlier = facts.get("elapsed", 0.0)
+		self.stage, self.rowCount, self.lastRow, self._earlier = "generated", 0, None, 0.0
+		if resumed is None:
+			self.stageStart, self.reference = {"step": O.iter, "time": O.time}, rows.Reference.of(self.scene)
+			self.frames, self.records = Frames(self.out), Records(self.out / RECORDS)
+		else:
+			self._goOnFrom(resumed)
 		self._clock = time.monotonic()
+
+	def _goOnFrom(self, resumed):
+		checkpoint = resumed.checkpoint
+		self.stage, self.rowCount, self.lastRow, self._earlier = checkpoint.stage, resumed.rows, resumed.last, checkpoint.elapsed
+		self.stageStart, self.reference = checkpoint.begun, rows.Reference(**checkpoint.reference)
+		self.frames, self.records = Frames(self.out, checkpoint.frames), Records(self.out / RECORDS, checkpoint.records.size)
+		self.scene.guard.checkpoint = str(self.out / checkpoint.state)
 
 	# What both stages share
 
@@ -112,28 +124,22 @@ class TriaxialTest:
 		return self.lastRow
 
 	def checkpoint(self, name=None):
-		"""Save the state: as ``name``.yade.gz, kept; else as this stage's last checkpoint, uncompressed, which takes a third of the time."""
-		old = checkpoints.read(self.out)["state"] if (self.out / "checkpoint.json").is_file() else None
-		state = f"{name}.yade.gz" if name else f"checkpoint-{self.stage}-{self.rowCount}.yade"
-		part = self.out / ("part-" + state)
-		O.save(str(part), quiet=True)
-		part.replace(self.out / state)
-		facts = {
-			"stage": self.stage,
-			"rows": self.rowCount,
-			"begun": self.stageStart,
-			"bytes": self.records.position(),
-			"frames": self.frames.written,
-			"reference": vars(self.reference),
-			"last": self.lastRow,
-			"elapsed": round(self.elapsed(), 2),
-		}
-		checkpoints.write(self.out, state, facts)
-		if old and old != state and old.startswith("checkpoint-"):
-			(self.out / old).unlink(missing_ok=True)
-		if self.scene.loop is None:
-			load(self.out / state)
-			self.scene = Scene()
+		"""Save the state: as ``name``.yade.gz, kept; else uncompressed, which takes a third of the time, until two later ones are there.
+
+		:raises OSError: the folder cannot be written; the checkpoint before is whole.
+		"""
+		state = self.store.stateName(name)
+		if self.store.isLast(state, O.iter, self.records.size):
+			return  # a test that has ended and is resumed
+		with Image.taken() as image:
+			entry = image.write(self.out / state)
+			records = Entry(self.records.position(), self.records.sha256)
+			elapsed = round(self.elapsed(), 2)
+			made = Checkpoint(state, self.stage, O.iter, self.stageStart, records, list(self.frames.written), vars(self.reference), elapsed)
+			self.store.add(made, entry)
+			if self.scene.loop is None:
+				image.load(self.out / state)
+				self.scene = Scene()
 		self.scene.guard.checkpoint = str(self.out / state)
 
 	def _show(self, progress, done):
@@ -299,19 +305,29 @@ class TriaxialTest:
 		self.checkpoint("sheared")
 
 	def _until(self, strain):
-		"""Run to an axial strain, to within one step's travel."""
+		"""Run to an axial strain, to within one step's travel, one step at least."""
 		step = self.config.shear.velocity * O.dt / self.reference.height
 		limit = O.iter + 10 * self._stepsOfShear()
-		while (missing := strain - self.strain()) > 0.5 * step:
+		missing = strain - self.strain()
+		while True:
 			if O.iter > limit:
 				raise StageError(f"shear.strain = {self.strain():.4g}: the platens do not move as asked; fix: see the engines of the scene")
 			self.advance(max(1, round(missing / step)))
+			if (missing := strain - self.strain()) <= 0.5 * step:
+				return
 
 	def _stepsOfShear(self):
 		return math.ceil((self.config.shear.strain + self.config.shear.rampStrain) * self.reference.height / (self.config.shear.velocity * O.dt))
 
 	def _announceShear(self, progress):
 		keys = self.config.shear
+		if self.rowCount == 0:
+			largest = mostRows(self.config, self.reference.height)
+			if self.config.output.records > largest:
+				raise StageError(
+					f"output.records = {self.config.output.records}: shear of the consolidated specimen has {largest} steps; "
+					f"fix: shear '{self.out / 'consolidated.yade.gz'}' with --from into another folder, with {largest} rows at most"
+				)
 		inertial = keys.velocity / self.reference.height * self._inertialTime()
 		progress.say(
 			f"shear at {keys.velocity:g} m/s to {100 * keys.strain:g} %: about {self._stepsOfShear()} steps, inertial number {inertial:.2e}"
@@ -340,6 +356,22 @@ class TriaxialTest:
 			self.checkpoint()
 
 
+def mostRows(config, height):
+	"""How many rows shear from this height [m] can have: one a step of the time step in ``O``."""
+	return math.floor(config.shear.strain * height / (config.shear.velocity * O.dt))
+
+
+def checkRows(config):
+	"""The rows wished must have steps to stand for, also when the specimen has become shorter in consolidation.
+
+	:raises ConfigError: they have not.
+	"""
+	bottom, top = Scene().faces()
+	largest = mostRows(config, (1 - _SHORTER) * (top - bottom))
+	if config.output.records > largest:
+		raise ConfigError("output.records", config.output.records, f"is finer than the steps of shear, of {O.dt:.4g} s", f"at most {largest}, or a lower shear.velocity")
+
+
 def _lostError():
 	"""The error that YADE loses when a run in its thread ends before ``O.run`` waits for it: the next step meets it again; '' when it does not."""
 	try:
@@ -347,17 +379,3 @@ def _lostError():
 	except RuntimeError as error:
 		return str(error)
 	return ""
-
-
-def load(path):
-	"""Put a saved state into ``O``.
-
-	:raises StageError: no such file, or YADE cannot read it.
-	"""
-	path = pathlib.Path(path)
-	if not path.is_file():
-		raise StageError(f"state = '{path}': there is no such file; fix: correct the path")
-	try:
-		O.load(str(path), quiet=True)
-	except RuntimeError as error:
-		raise StageError(f"state = '{path}': YADE cannot read it ({error}); fix: give a state saved by the same version") from None

@@ -56,11 +56,18 @@ inline FacetContacts facetContacts(const std::vector<std::array<int, 3>>& triang
 		double least = 1e300;
 		Vec3 foot, inwards = Vec3::Zero();
 		std::array<int, 3> nearest{};
+		struct Reached {
+			std::array<int, 3> triangle;
+			Vec3 foot;
+			double overlap;
+		};
+		std::vector<Reached> reached;
 		for (const auto& t : triangles) {
 			const std::array<Vec3, 3> p{x[t[0]], x[t[1]], x[t[2]]};
 			if (!(std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()}) > rule.limit)) continue;
 			const Vec3 q = nearestOfTriangle(c, p), normal = -(p[1] - p[0]).cross(p[2] - p[0]).normalized();
 			const double d = (c - q).norm();
+			if (d < grains[g].radius + rule.offset) reached.push_back({t, q, grains[g].radius + rule.offset - d});
 			if (d < least * (1 - 1e-9)) {
 				least = d;
 				foot = q;
@@ -74,13 +81,39 @@ inline FacetContacts facetContacts(const std::vector<std::array<int, 3>>& triang
 		if (!(overlap > 0) || !(least < grains[g].radius + rule.offset)) continue;
 		found.grains.push_back(int(g));
 		found.pushedBack += past;
-		found.energy += 0.5 * rule.kn * overlap * overlap;
-		found.onGrain[g] = rule.kn * overlap * (c - foot) / (past ? -least : least);
-		// what replaces a force by forces at three points
-		Eigen::Matrix3d corners;
-		corners << x[nearest[0]], x[nearest[1]], x[nearest[2]];
-		const Vec3 weights = corners.fullPivLu().solve(foot);
-		for (int v = 0; v < 3; ++v) found.onParticle[nearest[v]] -= weights[v] * found.onGrain[g];
+		const auto push = [&](const std::array<int, 3>& t, const Vec3& at, const Vec3& force) {
+			found.onGrain[g] += force;
+			// what replaces a force by forces at three points
+			Eigen::Matrix3d corners;
+			corners << x[t[0]], x[t[1]], x[t[2]];
+			const Vec3 weights = corners.fullPivLu().solve(at);
+			for (int v = 0; v < 3; ++v) found.onParticle[t[v]] -= weights[v] * force;
+		};
+		if (least <= rule.offset) {
+			found.energy += 0.5 * rule.kn * overlap * overlap;
+			push(nearest, foot, rule.kn * overlap * (c - foot) / (past ? -least : least));
+			continue;
+		}
+		// O of the energy kn O^2/2 as a function of all overlaps, and its slopes by differences of that function
+		const auto whole = [&](const std::vector<Reached>& all) {
+			double sum = 0, most = 0;
+			for (const Reached& one : all) {
+				sum += std::pow(one.overlap, 4);
+				most = std::max(most, one.overlap);
+			}
+			const double t = std::clamp((grains[g].radius + rule.offset - most - rule.offset) / rule.offset, 0., 1.);
+			return most + t * t * (3 - 2 * t) * (std::pow(sum, 0.25) - most);
+		};
+		const double all = whole(reached);
+		found.energy += 0.5 * rule.kn * all * all;
+		for (std::size_t k = 0; k < reached.size(); ++k) {
+			const double step = 1e-6 * rule.offset;
+			auto more = reached, less = reached;
+			more[k].overlap += step;
+			less[k].overlap -= step;
+			const double slope = (whole(more) - whole(less)) / (2 * step);
+			push(reached[k].triangle, reached[k].foot, rule.kn * all * slope * (c - reached[k].foot).normalized());
+		}
 	}
 	return found;
 }
