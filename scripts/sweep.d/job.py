@@ -117,7 +117,8 @@ class Job:
 			log.seek(begun)
 			lines = [line.strip() for line in log if line.strip()]
 		errors = [line.removeprefix("error: ") for line in lines if line.startswith("error: ")] or lines[-1:]
-		return child.returncode, errors[-1] if errors else ""
+		# places count from the study's folder, which may be moved
+		return child.returncode, errors[-1].replace(f"{self.base}/", "") if errors else ""
 
 	def run(self):
 		"""Run the stage until it is done or has failed for good; its result."""

@@ -286,14 +286,14 @@ def pidsOf(folder):
 
 
 def test_study(tmp_path):
-	"""A pressure that cannot be reached is a row. A test is killed in its shear, then scripts/sweep itself: the table is that of a study without either, and of part of it again."""
-	axes = {"specimen.friction": [0.3, 0.6], "consolidation.maxSteps": [200, 200000]}
-	path, whole, broken = write(tmp_path, axes=axes, changes={"shear": {"strain": 0.03}}), tmp_path / "whole", tmp_path / "broken"
+	"""A pressure that cannot be reached is a row. A test is killed in its shear, then scripts/sweep: the table is that of an unbroken study; one run is made again."""
+	path = write(tmp_path, axes={"consolidation.maxSteps": [200, 200000]}, changes={"shear": {"strain": 0.03}})
+	whole, broken = tmp_path / "whole", tmp_path / "broken"
 	code, said = call(path, "--out", whole, "--cores", 2)
 	with open(whole / results.RUNS, encoding="utf-8") as file:
 		rows = list(csv.DictReader(file))
 	assert code == 1, said
-	assert [row["status"].partition(":")[0] for row in rows] == ["failed", "done"] * 2
+	assert [row["status"].partition(":")[0] for row in rows] == ["failed", "done"]
 	assert rows[0]["status"].startswith("failed: consolidation: consolidation.maxSteps = 200") and float(rows[1]["peak_q [Pa]"]) > 1e4
 	assert {path.name for path in whole.iterdir()} >= {results.MEANS, results.RECORDS, "study.png", archive.ARCHIVE}
 	stamp = (whole / results.PROVENANCE).stat().st_mtime_ns
