@@ -76,7 +76,7 @@ setUpRoot() {
 		exec 9>&-
 		return
 	fi
-	say "first set-up: a private Debian 13 root with YADE, compiler and libraries (about 550 MB to download, 2 GB on disk)"
+	say "first set-up: a private Debian 13 root with YADE, compiler and libraries (about 560 MB to download, 2.1 GB on disk)"
 	say "in $root"
 	local freeKb
 	freeKb=$(df -Pk "$cache" | awk 'NR == 2 { print $4 }')

@@ -48,7 +48,8 @@ def processor():
 	return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), platform.machine())
 
 
-def _dieWithParent():
+def dieWithParent():
+	"""For a process that is about to start: it is killed when the one that starts it ends."""
 	ctypes.CDLL(None).prctl(_DIE_WITH_PARENT, signal.SIGKILL)
 
 
@@ -103,7 +104,7 @@ class Job:
 		said = self.folder / "log.txt"
 		with open(said, "ab") as log:
 			begun = log.tell()
-			child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment, preexec_fn=_dieWithParent)
+			child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment, preexec_fn=dieWithParent)
 			try:
 				while child.poll() is None:
 					time.sleep(_LOOK)

@@ -97,7 +97,8 @@ def _run(plan, folder, arguments):
 	if not arguments.slurm and not arguments.profile:
 		environment[job.RUNNER] = str(os.getpid())
 	with open(folder / LOG, "ab") as log, Progress("sweep") as progress:
-		child = subprocess.Popen(_snakemake(arguments), cwd=folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment, start_new_session=True)
+		own = {"start_new_session": True, "preexec_fn": job.dieWithParent}
+		child = subprocess.Popen(_snakemake(arguments), cwd=folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment, **own)
 		ended = {}
 		try:
 			while True:
