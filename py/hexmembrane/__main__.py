@@ -3,6 +3,10 @@
 
 import sys
 
-from hexmembrane.run.command import main
+try:
+	from hexmembrane.run.command import main
+except ImportError as error:
+	# the plugin is missing, of another version or beside an installed one; the message has the fix
+	sys.exit(f"error: {error}")
 
 sys.exit(main(sys.argv[1:]))

@@ -10,6 +10,7 @@ import ctypes
 import importlib.machinery
 import importlib.util
 import os
+import signal
 import sys
 
 import hexmembrane
@@ -24,8 +25,8 @@ def _refuseAnother(folder):
 	loaded = loadedLibrary()
 	if folder and loaded and os.path.realpath(loaded) != os.path.realpath(os.path.join(folder, _MODULE + ".so")):
 		raise ImportError(
-			"YADE has loaded the plugin %s at start, but HEXMEMBRANE_BUILD = %s asks for another. Remove the installed one, or unset "
-			"HEXMEMBRANE_BUILD (run YADE's own program instead of scripts/yade)." % (loaded, folder)
+			"HEXMEMBRANE_BUILD = %s: YADE has loaded the plugin %s at start, and it can hold one only; fix: remove the installed one, or run YADE's own "
+			"program, without HEXMEMBRANE_BUILD and not by scripts/" % (folder, loaded)
 		)
 
 
@@ -81,6 +82,8 @@ def load():
 	path = os.path.join(os.path.abspath(folder), _MODULE + ".so")
 	if not os.path.isfile(path):
 		raise ImportError("HEXMEMBRANE_BUILD = %s: there is no %s.so in it. Build the plugin: cmake --build %s." % (folder, _MODULE, folder))
+	# An interrupt's exception must not pass through the libraries' initialisation: it is held back until they are there.
+	masked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
 	try:
 		# YADE's classes are shared with the plugin, so its symbols must be global ones, as for every plugin of YADE.
 		ctypes.CDLL(path, mode=os.RTLD_NOW | os.RTLD_GLOBAL)
@@ -90,4 +93,6 @@ def load():
 		loader.exec_module(module)
 	except OSError as error:
 		raise ImportError("%s could not be loaded into YADE: %s. Rebuild it against this very YADE." % (path, error)) from error
+	finally:
+		signal.pthread_sigmask(signal.SIG_SETMASK, masked)
 	sys.modules[_MODULE] = module

@@ -1,6 +1,11 @@
 # shellcheck shell=bash
 # Sourced first by the scripts: where things are, how they speak.
 
+# A standard stream that is closed would give its place to the next file that is opened.
+{ : <&0; } 2>/dev/null || exec </dev/null
+{ : >&1; } 2>/dev/null || exec >/dev/null
+{ : >&2; } 2>/dev/null || exec 2>/dev/null
+
 checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd -P)
 setupDir=$checkout/scripts/setup.d
 buildDir=$checkout/build

@@ -3,6 +3,10 @@
 
 YADE's own program prints its banner, opens network ports for remote control and ends in a shell of its own; it can be imported as
 well, which starts YADE only. The exit code is that of the script.
+
+A signal while YADE starts ends the process at once: an exception must not pass through its libraries. Whoever starts this blocks SIGINT and SIGTERM
+(runPython of setup.sh), which Python would meet with a traceback before it reads the first line here. Standard streams that are closed are opened
+on /dev/null, lest a file of the script gets their place.
 """
 
 import contextlib
@@ -12,7 +16,46 @@ import io
 import os
 import runpy
 import shutil
+import signal
 import sys
+
+
+def openStreams():
+	for descriptor in range(3):
+		try:
+			os.fstat(descriptor)
+		except OSError:
+			os.open(os.devnull, os.O_RDWR)  # takes the lowest free place
+	for name, descriptor in (("stdout", 1), ("stderr", 2)):
+		if getattr(sys, name) is None:
+			setattr(sys, name, open(descriptor, "w", closefd=False))
+
+
+def flushStreams():
+	"""What cannot be written is lost: a reader that has gone changes no exit code."""
+	for stream in (sys.stdout, sys.stderr):
+		with contextlib.suppress(OSError, ValueError):
+			stream.flush()
+
+
+@contextlib.contextmanager
+def endedBySignals():
+	"""Within it SIGINT and SIGTERM end the process at once, with a shell's exit code for them."""
+
+	def end(number, frame):
+		with contextlib.suppress(OSError):
+			os.write(2, b"interrupted\n" if number == signal.SIGINT else b"terminated\n")
+		os._exit(128 + number)
+
+	# a signal that the caller has set to be ignored stays so
+	before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+	before = {number: handler for number, handler in before.items() if handler is not signal.SIG_IGN}
+	for number in before:
+		signal.signal(number, end)
+	signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, signal.SIGTERM})
+	yield
+	for number, handler in before.items():
+		signal.signal(number, handler)
 
 
 def startYade(threads):
@@ -50,10 +93,12 @@ def run(script, arguments):
 
 
 if __name__ == "__main__":
-	startYade(int(sys.argv[1]))
+	openStreams()
+	os.environ["HEXMEMBRANE_LAUNCHER"] = os.path.abspath(__file__)
+	with endedBySignals():
+		startYade(int(sys.argv[1]))
 	code = run(sys.argv[2], sys.argv[3:])
-	sys.stdout.flush()
-	sys.stderr.flush()
+	flushStreams()
 	import yade
 
 	# YADE's libraries may crash when they are unloaded; this removes its temporary files and leaves without a backtrace.

@@ -31,6 +31,21 @@ dieWithoutNamespaces() {
 		"Or use Debian 13 itself (e.g. the image debian:13), where no private root is needed."
 }
 
+# requireEntry ENTRY...: the root can be entered by these words. What they say is held in memory: the cache may be read-only.
+requireEntry() {
+	local said
+	said=$("$@" true 2>&1) || dieWithoutNamespaces "$(tail -n 1 <<<"$said")"
+}
+
+# requirePlain FOLDER: its name can stand in apt's configuration and in the loader's list of folders.
+requirePlain() {
+	local odd
+	for odd in : '"' '\' $'\n'; do
+		[[ $1 != *"$odd"* ]] || die "the cache folder $1 has the character $odd in its name, which apt or the loader takes for their own." \
+			"fix: set XDG_CACHE_HOME to a folder without it"
+	done
+}
+
 # enterRoot TREE: sets the array `entry`, the words before a command that is to run in TREE. /usr and /etc are the root's, read-only;
 # every other top-level folder is the host's at the same path: checkout, cache, home, output and working folder need no translation.
 enterRoot() {
@@ -67,7 +82,7 @@ setUpRoot() {
 	local root=$1 work=$1.part trouble
 	[[ $(uname -m) == x86_64 ]] || die "this machine is $(uname -m); the private Debian 13 root is made for x86_64 only." \
 		"On Debian 13 itself install the packages of scripts/setup.d/packages.list; then no private root is needed."
-	[[ $cache != *:* ]] || die "the cache folder $cache has a colon in its name, which the loader takes for a separator." "fix: set XDG_CACHE_HOME"
+	requirePlain "$cache"
 	needAptTools
 	trouble=$(namespaceTrouble)
 	[[ -z $trouble ]] || dieWithoutNamespaces "$trouble"
@@ -158,7 +173,7 @@ finishRoot() {
 	cat "$tree"/usr/share/ca-certificates/mozilla/*.crt >"$tree/etc/ssl/certs/ca-certificates.crt"
 	enterRoot "$tree"
 	local writable=("${entry[@]/#--ro-bind/--bind}")
-	"${writable[@]}" true 2>"$work/enter.log" || dieWithoutNamespaces "$(tail -n 1 "$work/enter.log")"
+	requireEntry "${writable[@]}"
 	"${writable[@]}" ldconfig -i || die "ldconfig failed in the new root."
 	[[ $("${entry[@]}" yade-double --version) == *" $yadeVersion"* ]] || die "the new root's YADE is not version $yadeVersion."
 	fetchYadeSource "$work/source"

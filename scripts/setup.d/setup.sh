@@ -46,7 +46,7 @@ chooseHost() {
 		yadeSource=/usr/src/yade
 		hostId="root ${root##*-}"
 		enterRoot "$root"
-		"${entry[@]}" true 2>"$cache/enter.log" || dieWithoutNamespaces "$(tail -n 1 "$cache/enter.log")"
+		requireEntry "${entry[@]}"
 	fi
 	entry+=(HEXMEMBRANE_BUILD="$buildDir")
 }
@@ -123,11 +123,15 @@ runBeside() {
 	trap 'terminate $pid' TERM
 	while :; do
 		status=0
-		wait "$pid" || status=$?
+		wait "$pid" 2>/dev/null || status=$?
 		kill -0 "$pid" 2>/dev/null || break
 	done
 	exit "$status"
 }
+
+# runPython SCRIPT...: runBeside of launch.py or withoutPorts.py. They take on the signals that are blocked until then: Python would meet
+# them with a traceback while it starts.
+runPython() { runBeside env --block-signal=INT,TERM python3 "$@"; }
 
 # Bubblewrap has exactly one child, the command; without it (natively) the process is the command itself.
 # The command may end between the look and the signal: then there is nobody to tell, and the caller's wait gives its status.

@@ -92,6 +92,7 @@ TABLE = {
 	"platens.*": _ALWAYS[CONSOLIDATION],
 	"consolidation.*": _ALWAYS[CONSOLIDATION],
 	"shear.strain": (At(CONSOLIDATION, lambda config: config.platens.thickness is None), At(SHEAR)),  # platens are as thick as they travel
+	"shear.pressureTolerance": (At(SHEAR, lambda config: config.shear.stopOutsideTolerance),),
 	"shear.*": _ALWAYS[SHEAR],
 	"numerics.threads": (),
 	"numerics.verlet": (At(CONSOLIDATION, _reference),),

@@ -3,27 +3,22 @@
 
 import contextlib
 import json
-import math
 import pathlib
 import shutil
 
 from dependence import CONSOLIDATION, SHEAR, SPECIMEN, contentOf, givesOwnPorosity, names
-from hexmembrane.configuration import toDict
+import studyfile
+from hexmembrane.configuration import ConfigError, toDict
 from hexmembrane.configuration.config import PATHS
-from hexmembrane.scene import accuracy, specimen, timestep
+from hexmembrane.run import estimate
+from hexmembrane.scene import accuracy, specimen
 
 FORMAT = 1
 NAME, STAGES_FOLDER, INPUTS, RESULT = "plan.json", "stages", "inputs", "result.json"
-#: Time of one particle in one step [s] on one thread: the compact tier with its membrane, and YADE's own loop. Rough, pkg/compact/README.md has the measurements.
-PARTICLE_STEP = {"compact": 2e-7, "reference": 1.5e-6}
-#: Start of YADE, plots and files of a stage [s].
+#: Start of YADE, picture and files of a stage [s].
 _START = 4.0
-#: Ramps of the pressure that a consolidation takes in all, until it is at rest.
-_RAMPS = 2.0
-#: Share of the grains' critical step that a membrane's spheres leave.
-_MEMBRANE_SHARE = 0.6
-#: Bytes of a particle in a kept state, in the two checkpoints that are kept, in a packing; bytes of a row and of a picture.
-_STATE, _CHECKPOINTS, _PACKING, _ROW, _PICTURE = 250, 1500, 90, 800, 150000
+#: Time [s] and bytes of a grain that is packed; bytes of a picture.
+_PACKING_TIME, _PACKING, _PICTURE = 2e-3, 90, 150000
 
 
 def _settled(config):
@@ -37,26 +32,22 @@ def _settled(config):
 	return radii
 
 
-def _particles(config, radii):
-	if config.boundary != "membrane":
-		return len(radii)
-	radius = config.membrane.particleRadius or config.membrane.sizeRatio * float(radii.min())
-	rows = config.specimen.height / (math.sqrt(3) * radius) + 2 * config.membrane.oRingRows
-	return round(len(radii) + math.pi * config.specimen.radius / radius * rows)
-
-
 def _costs(config, radii):
-	"""{stage: (processor time [s], bytes on the disk)}: estimates."""
-	particles, shear = _particles(config, radii), config.shear
-	step = config.numerics.dt or config.numerics.safety * timestep.grainStep(config.specimen, radii) * (_MEMBRANE_SHARE if config.boundary == "membrane" else 1)
-	ramp = config.consolidation.rampTime or 30 * timestep.inertialTime(radii, config.specimen.density, config.consolidation.pressure)
-	sheared = (shear.strain + shear.rampStrain) * config.specimen.height / shear.velocity
-	one = particles * PARTICLE_STEP[config.tier]
-	steps = _RAMPS * ramp / step
+	"""{stage: (processor time [s], bytes on the disk)}, as a test's own estimate has them.
+
+	:raises ConfigError: the test is beyond this machine, or not sound.
+	"""
+	estimate.requireStiffness(config)
+	estimate.requireTravel(config)
+	needs = estimate.Estimate.of(config, radii)
+	needs.require(config, estimate.Machine.here())
+	spheres = needs.grains + needs.membrane
+	one, kept = spheres * estimate.SECONDS[config.tier], spheres * (estimate.STATE + 2 * estimate.CHECKPOINT)
+	rows = needs.consolidation / config.output.consolidationSteps, config.output.records
 	return {
-		SPECIMEN: (_START + 2e-3 * len(radii), _PACKING * len(radii)),
-		CONSOLIDATION: (_START + one * steps, particles * (_STATE + _CHECKPOINTS) + _ROW * steps / config.output.consolidationSteps),
-		SHEAR: (_START + one * sheared / step, particles * (_STATE + _CHECKPOINTS) + _ROW * config.output.records + _PICTURE),
+		SPECIMEN: (_START + _PACKING_TIME * len(radii), _PACKING * len(radii)),
+		CONSOLIDATION: (_START + one * needs.consolidation, kept + estimate.ROW * rows[0]),
+		SHEAR: (_START + one * needs.shear, kept + estimate.ROW * rows[1] + _PICTURE),
 	}
 
 
@@ -77,8 +68,11 @@ def make(study):
 	"""The plan of a :class:`studyfile.Study` as plain values, and its input files: place under the plan's folder -> file."""
 	runs, jobs, inputs = [], {}, {}
 	for run in study.runs:
-		radii = _settled(run.config)
-		stages, costs, before = names(run.config), _costs(run.config, radii), None
+		try:
+			radii = _settled(run.config)
+			stages, costs, before = names(run.config), _costs(run.config, radii), None
+		except ConfigError as error:
+			raise studyfile.wrongRun(run.name, {**run.values, studyfile.SEED: run.seed}, error) from None
 		for stage, name in stages.items():
 			if name not in jobs:
 				keys = _keys(run.config, inputs)

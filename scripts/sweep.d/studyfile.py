@@ -11,7 +11,7 @@ from dependence import flat, stageOf
 from hexmembrane import configuration
 from hexmembrane.configuration import Config, ConfigError, derived, toDict
 from hexmembrane.configuration.config import PATHS
-from hexmembrane.configuration.files import readYaml
+from hexmembrane.configuration.reader import read
 
 #: Key of a study's file -> what it is.
 KEYS = {
@@ -54,7 +54,7 @@ def load(path):
 	:raises ConfigError: the file or one of its tests is wrong; the message says which.
 	"""
 	path = pathlib.Path(path)
-	given = readYaml(path)
+	given = read(path)
 	if not isinstance(given, dict):
 		raise ConfigError("study", str(path), "is not a mapping of keys", "write 'key: value' lines")
 	for name in given:
@@ -163,11 +163,17 @@ def _attempts(attempts):
 	return attempts
 
 
+def wrongRun(name, values, error):
+	"""The error that says which run has another error."""
+	wrong, _, fix = str(error).partition("; fix: ")
+	return ConfigError("study", f"run {name}: " + ", ".join(f"{key} = {value}" for key, value in values.items()), wrong, fix)
+
+
 def _run(number, values, seed, base):
+	name = f"{number:04d}"
 	try:
 		config = derived(base, nested({**values, SEED: seed}))
 	except ConfigError as error:
-		where = ", ".join(f"{key} = {value}" for key, value in {**values, SEED: seed}.items())
-		raise ConfigError("study", f"run {number}: {where}", str(error).partition("; fix: ")[0], str(error).partition("; fix: ")[2]) from None
+		raise wrongRun(name, {**values, SEED: seed}, error) from None
 	checked = flat(toDict(config))
-	return Run(f"{number:04d}", {key: checked[key] for key in values}, config.specimen.seed, config)
+	return Run(name, {key: checked[key] for key in values}, config.specimen.seed, config)

@@ -16,7 +16,7 @@ from hardcases import CASES, Case, named  # noqa: E402
 SHORT = (
 	"pressure at once", "twenty cycles", "extension", "torn membrane", "frictionless grains", "R over r 2", "1.1 of the critical step",
 	"3 times the critical step", "similar tests", "tilted platen, reference", "tilted platen, compact", "collisions of pairs, reference",
-	"collisions of pairs, compact", "frictionless gas",
+	"collisions of pairs, compact", "frictionless gas", "10 MPa, emod as it is",
 )  # fmt: skip
 REST = Case("at rest", drive=casescenes.rest(20000), bounds={"drift of porosity": (0, 1e-6), "drift of pressure": (0, 1e-4), "energy": (0, 1e-6)})
 

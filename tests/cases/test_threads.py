@@ -2,8 +2,8 @@
 """One against several threads on the same scene. YADE's own number is fixed at its start: a YADE with one thread and one with three write their runs."""
 
 import os
-import shutil
 import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -15,12 +15,12 @@ SCENE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "threadsScene.p
 def started(folder, threads):
 	"""What the scene writes in a YADE with this many threads: an array for each run by its name."""
 	file = str(folder / ("%d.npz" % threads))
-	program = os.environ.get("YADE_EXECUTABLE") or shutil.which("yade-double")
 	tests = os.path.dirname(os.path.dirname(SCENE))
+	launcher = os.path.join(os.path.dirname(tests), "scripts", "setup.d", "launch.py")
 	folders = os.path.join(os.path.dirname(tests), "py"), os.path.join(tests, "engines")
 	# more threads than cores must not spin
 	environment = dict(os.environ, PYTHONPATH=os.pathsep.join(folders), OMP_WAIT_POLICY="passive")
-	done = subprocess.run([program, "-n", "-x", "-j%d" % threads, SCENE, file], env=environment, capture_output=True, text=True, timeout=300)
+	done = subprocess.run([sys.executable, launcher, str(threads), SCENE, file], env=environment, capture_output=True, text=True, timeout=300)
 	assert os.path.isfile(file), done.stdout + done.stderr
 	return np.load(file)
 

@@ -12,6 +12,7 @@ ORDER = ("configuration", "scene", "measure", "output", "run")
 WITHOUT_YADE = (
 	"configuration.schema",
 	"configuration.config",
+	"configuration.reader",
 	"scene.gradation",
 	"scene.packing_file",
 	"scene.timestep",
@@ -21,6 +22,8 @@ WITHOUT_YADE = (
 	"output.vtk",
 	"output.plots",
 	"run.checkpoints",
+	"run.estimate",
+	"run.pressure_watch",
 	"run.lock",
 	"run.manifest",
 	"run.progress",

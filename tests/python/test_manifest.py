@@ -64,7 +64,8 @@ def test_roundTrip(folder):
 	store = Store.existing(folder)
 	assert checkpoints.exist(folder)
 	assert store.last().rows == 3 and store.last().last == rowOf(2) and store.last().warnings == []
-	assert sorted(p.name for p in folder.iterdir()) == ["checkpoint-1.yade", "checkpoint-2.yade", "config.yaml", "consolidated.yade.gz", "manifest.json", "records.csv"]
+	names = ["checkpoint-1.yade", "checkpoint-2.yade", "config.yaml", "consolidated.yade.gz", "manifest.json", "records.csv"]
+	assert sorted(p.name for p in folder.iterdir()) == names
 
 
 def test_ofAnotherVersion(folder):

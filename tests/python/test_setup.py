@@ -132,3 +132,44 @@ def test_interruptedConfigurationGoesOn(call, tmp_path):
 @pytest.mark.parametrize("variables, asked", [({}, False), ({"CI": "true"}, True)])
 def test_warningsAreErrorsInContinuousIntegrationOnly(call, tmp_path, variables, asked):
 	assert ("-DHEXMEMBRANE_WERROR=ON" in call(CONFIGURE, tmp_path, **variables)[1]) is asked
+
+
+COMPLETE = """mkdir -p "$cache/root-$(rootHash)"; chmod a-w "$cache"; HEXMEMBRANE_HOST=root
+isDebian13() { false; }
+enterRoot() { entry=(%s); }
+chooseHost; printf '%%s\\n' "${entry[0]}"; chmod u+w "$cache"
+"""
+
+
+def test_readOnlyCacheWithACompleteRoot(call):
+	"""The root is entered and nothing is written; a file in its place makes it read-only for the superuser too."""
+	code, said, error = call(COMPLETE.replace("chmod a-w", "mkdir -p \"$cache/enter.log\"; chmod a-w") % "env")
+	assert (code, said, error) == (0, "env\n", "")
+
+
+def test_refusedNamespacesAreToldAsTheyAre(call):
+	code, _, error = call(COMPLETE % "sh -c 'echo no namespaces here >\\&2; exit 1'".replace("\\&", "&"))
+	assert code == 1 and "refuses mount namespaces (no namespaces here)" in error
+
+
+@pytest.mark.parametrize("odd", ["a:b", 'a"b', "a\\b", "a\nb"])
+def test_cacheThatAptCannotName(call, tmp_path, odd):
+	"""The character is named, before the network is asked."""
+	code, _, error = call('setUpRoot "$cache/root-x"', XDG_CACHE_HOME=str(tmp_path / odd))
+	assert code == 1 and "has the character " + odd[1] + " in its name" in error and "fix: set XDG_CACHE_HOME" in error
+
+
+@pytest.mark.parametrize("signal, code", [("TERM", 143), ("INT", 130)])
+def test_endedCommandSaysNothing(call, signal, code):
+	"""No line of a shell's about a command that a signal has ended."""
+	assert call("host=native; entry=(env); runBeside sh -c 'kill -%s $$'" % signal) == (code, "", "")
+
+
+@pytest.mark.parametrize("threads", ["8193", "100000", "99999999999999999999"])
+def test_threadsBeyondTheProcessors(tmp_path, threads):
+	"""Refused before anything is set up."""
+	command = ["bash", str(CHECKOUT / "scripts" / "run"), "--threads", threads]
+	environment = {"PATH": "/usr/bin:/bin", "XDG_CACHE_HOME": str(tmp_path / "cache")}
+	result = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60)
+	assert result.returncode == 1 and "threads = %s: is more than four a processor." % threads in result.stderr and "fix: " in result.stderr
+	assert not (tmp_path / "cache").exists()

@@ -137,7 +137,7 @@ def test_accuracyIsSettledBeforeAnythingIsNamed(tmp_path):
 		({"axis": {}}, "study.axis.*did you mean 'axes'"),
 		({"axes": {"specimen.frition": [1]}}, "axes.specimen.frition.*did you mean 'specimen.friction'"),
 		({"axes": {"specimen.friction": 0.3}}, "is not a list of values"),
-		({"axes": {"specimen.friction": [0.3, -1]}}, r"run 2: specimen.friction = -1, specimen.seed = 1.*out of range"),
+		({"axes": {"specimen.friction": [0.3, -1]}}, r"run 0002: specimen.friction = -1, specimen.seed = 1.*out of range"),
 		({"axes": {"specimen.seed": [1, 2]}}, "give it as seeds"),
 		({"axes": {"membrane.young": [1e6, 2e6]}}, "changes no result of these tests"),
 		({"axes": {"title": ["a", "b"]}}, "changes no result of these tests"),

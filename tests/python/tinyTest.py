@@ -4,12 +4,13 @@
 import copy
 import os
 import pathlib
-import shutil
 import subprocess
+import sys
 
 import yaml
 
 ROOT = pathlib.Path(__file__).parents[2]
+LAUNCHER = ROOT / "scripts" / "setup.d" / "launch.py"
 MAIN = ROOT / "py" / "hexmembrane" / "__main__.py"
 TINY = {
 	"title": "tiny",
@@ -23,8 +24,7 @@ GRADATION = "diameter (mm), percent passing\n4, 0\n5, 60\n6, 100\n"
 
 
 def command(*arguments):
-	program = os.environ.get("YADE_EXECUTABLE") or shutil.which("yade-double")
-	return [program, "-n", "-x", "-j", "1", str(MAIN), *map(str, arguments)]
+	return [sys.executable, str(LAUNCHER), "1", str(MAIN), *map(str, arguments)]
 
 
 def environment():

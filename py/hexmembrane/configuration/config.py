@@ -6,10 +6,10 @@
 
 import dataclasses
 import math
-import pathlib
+import os
 from typing import Optional
 
-from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, paths, section, shared, toDict
+from hexmembrane.configuration.schema import LONGEST_PATH, REQUIRED, ConfigError, build, key, paths, section, shared, toDict
 
 #: Keys of the specimen that are files.
 PATHS = ("packing", "gradation")
@@ -23,8 +23,8 @@ class Specimen:
 
 	radius: float = key(REQUIRED, "radius of the specimen", "m", low=0, openLow=True)
 	height: float = key(REQUIRED, "height of the specimen", "m", low=0, openLow=True)
-	packing: Optional[str] = key(None, "packing file to take instead of making one; relative to the configuration's folder", free=True)
-	gradation: Optional[str] = key(None, "CSV file of the gradation (see gradation.py); relative to the configuration's folder", free=True)
+	packing: Optional[str] = key(None, "packing file to take instead of making one; relative to the configuration's folder", free=True, longest=LONGEST_PATH)
+	gradation: Optional[str] = key(None, "CSV file of the gradation (see gradation.py); relative to the configuration's folder", free=True, longest=LONGEST_PATH)
 	scale: Optional[float] = key(
 		None, "factor on the gradation's diameters; none with a wished number of grains: it follows from that", "", low=0, openLow=True
 	)
@@ -256,7 +256,7 @@ class Consolidation:
 		openLow=True,
 		free=True,
 	)
-	maxSteps: int = key(200000, "steps after which a test that has not come to rest stops with an error", "", low=100, free=True)
+	maxSteps: int = key(200000, "steps after which a test that has not come to rest stops with an error", "", low=100, high=10**9, free=True)
 	timeLimit: Optional[float] = key(
 		None,
 		"time that the servos of top platen and rigid wall have to reach each target once, else the test stops with an error; none: maxSteps alone limits",
@@ -275,6 +275,17 @@ class Shear:
 	velocity: float = key(0.02, "speed at which the platens approach each other", "m/s", low=0, high=10, openLow=True)
 	moving: str = key("top", "platens that move; both: half the velocity each", "", choices=("top", "both"))
 	rampStrain: float = key(0.0005, "axial strain over which the velocity rises smoothly from 0", "", low=0, high=0.1)
+	pressureTolerance: float = key(
+		0.05,
+		"distance of the transmitted pressure from what the lateral boundary is to hold, as a share of sigma3 (column sigma3_distance), beyond which the log "
+		"tells of it",
+		"",
+		low=0,
+		high=10,
+		openLow=True,
+		free=True,
+	)
+	stopOutsideTolerance: bool = key(False, "a distance beyond pressureTolerance stops the test with an error; the last checkpoint stays", free=True)
 
 
 @dataclasses.dataclass
@@ -286,7 +297,7 @@ class Numerics:
 	damping: float = shared("local_damping", "local (Cundall) damping of NewtonIntegrator")
 	verlet: float = key(0.2, "contact detection's skin in the reference tier, as a share of the smallest sphere's radius", "", low=0, high=1)
 	skin: float = shared("list_skin", "skin of the neighbour lists in the compact tier, as a share of the smallest sphere's radius", high=1)
-	substeps: int = shared("substeps", "steps that the compact tier takes in one YADE iteration at most")
+	substeps: int = shared("substeps", "steps that the compact tier takes in one YADE iteration at most", high=10**6)
 	threads: Optional[int] = key(None, "OpenMP threads; none: as YADE was started", "", low=1, high=1024, free=True)
 
 
@@ -295,9 +306,9 @@ class Output:
 	"""What is written and how often."""
 
 	records: int = key(120, "rows of records.csv in shear", "", low=1, high=1000000)
-	consolidationSteps: int = key(500, "steps between rows in consolidation", "", low=1)
-	vtkEvery: int = key(20, "rows between VTK frames in shear, first and last state always; 0: no VTK", "", low=0, free=True)
-	checkpointEvery: int = key(20, "rows between checkpoints, start of the consolidation and end of each stage always; 0: only there", "", low=0, free=True)
+	consolidationSteps: int = key(500, "steps between rows in consolidation", "", low=1, high=10**9)
+	vtkEvery: int = key(20, "rows between VTK frames in shear, first and last state always; 0: no VTK", "", low=0, high=10**9, free=True)
+	checkpointEvery: int = key(20, "rows between checkpoints, start of the consolidation and end of each stage always; 0: only there", "", low=0, high=10**9, free=True)
 	energy: bool = key(True, "track energies and record their balance")
 
 
@@ -352,8 +363,8 @@ class Config:
 		for name in PATHS:
 			path = getattr(config.specimen, name)
 			if path is not None:
-				path = pathlib.Path(folder, path).expanduser().resolve()
-				if not path.is_file():
-					raise ConfigError(f"specimen.{name}", str(path), "there is no such file", "correct the path")
-				setattr(config.specimen, name, str(path))
+				path = os.path.realpath(os.path.join(folder, os.path.expanduser(path)))
+				if not os.path.isfile(path):
+					raise ConfigError(f"specimen.{name}", path, "there is no such file", "correct the path")
+				setattr(config.specimen, name, path)
 		return config

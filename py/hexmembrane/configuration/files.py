@@ -17,7 +17,19 @@ import yaml
 
 import hexmembrane
 from hexmembrane.configuration.config import PATHS, Config
-from hexmembrane.configuration.schema import ConfigError, paths, toDict
+from hexmembrane.configuration.reader import read
+from hexmembrane.configuration.schema import LONGEST_PATH, ConfigError, paths, plainText, toDict
+
+
+#: Files that a configuration may be made of, one the base of the next.
+MOST_BASES = 20
+
+
+class _Writer(yaml.SafeDumper):
+	"""Writes values out where PyYAML would write an alias, which the reader refuses."""
+
+	def ignore_aliases(self, data):
+		return True
 
 
 def merged(base, changes):
@@ -49,12 +61,15 @@ def load(path):
 
 def _layers(path, above):
 	"""(keys of the file and its bases, folder that relative paths count from); ``above``: the files that it is a base of."""
-	keys = readYaml(path)
+	keys = read(path)
 	if not isinstance(keys, dict) or "base" not in keys:
 		return keys, path.parent
 	changes = {name: value for name, value in keys.items() if name != "base"}
 	if not isinstance(keys["base"], str):
 		raise ConfigError("base", keys["base"], "is not text", "give the YAML file that this one changes")
+	plainText("base", keys["base"], LONGEST_PATH)
+	if len(above) >= MOST_BASES:
+		raise ConfigError("base", keys["base"], f"is the base of more than {MOST_BASES} files", "write fewer files that change one another")
 	base = path.parent / keys["base"]
 	if base.resolve() in (*above, path.resolve()):
 		raise ConfigError("base", keys["base"], "is its own base", "correct the path")
@@ -66,42 +81,6 @@ def _layers(path, above):
 		paths = {name: os.path.join(folder, specimen[name]) for name in PATHS if isinstance(specimen.get(name), str)}
 		below = merged(below, {"specimen": {name: os.path.abspath(os.path.expanduser(value)) for name, value in paths.items()}})
 	return merged(below, changes), path.parent
-
-
-def readYaml(path):
-	"""What a YAML file says; a key given twice is an error.
-
-	:param path: pathlib.Path of the file.
-	:raises ConfigError: it cannot be read or is no YAML.
-	"""
-	try:
-		text = path.read_text(encoding="utf-8")
-	except OSError as error:
-		raise ConfigError("configuration", str(path), f"cannot be read ({error.strerror})", "correct the path") from None
-	except UnicodeDecodeError:
-		raise ConfigError("configuration", str(path), "is not text in UTF-8", "give a YAML file") from None
-	try:
-		return yaml.load(text, Loader=_UniqueKeys)
-	except yaml.YAMLError as error:
-		where = getattr(error, "problem_mark", None)
-		line = f", line {where.line + 1}" if where else ""
-		problem = getattr(error, "problem", None) or error
-		raise ConfigError("configuration", f"{path}{line}", f"is not YAML ({problem})", "correct the line") from None
-
-
-class _UniqueKeys(yaml.SafeLoader):
-	"""PyYAML's safe loader, except that a key given twice is an error and not silently the last one."""
-
-	def construct_mapping(self, node, deep=False):
-		seen = set()
-		for place, _ in node.value:
-			name = self.construct_object(place, deep=True)
-			if not isinstance(name, str):
-				raise yaml.constructor.ConstructorError(None, None, f"key {name!r} is not text", place.start_mark)
-			if name in seen:
-				raise yaml.constructor.ConstructorError(None, None, f"key '{name}' is given twice", place.start_mark)
-			seen.add(name)
-		return super().construct_mapping(node, deep)
 
 
 def _commit():
@@ -137,5 +116,5 @@ def save(config, path, **more):
 	"""Write ``resolved(config, **more)`` as YAML, by temporary name and rename."""
 	path = pathlib.Path(path)
 	part = path.with_name(path.name + ".part")
-	part.write_text(yaml.safe_dump(resolved(config, **more), sort_keys=False, allow_unicode=True, width=110), encoding="utf-8")
+	part.write_text(yaml.dump(resolved(config, **more), Dumper=_Writer, sort_keys=False, allow_unicode=True, width=110), encoding="utf-8")
 	part.replace(path)

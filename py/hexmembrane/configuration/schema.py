@@ -13,6 +13,17 @@ import functools
 import math
 import pathlib
 import typing
+import unicodedata
+
+
+#: Characters of a value that a message shows.
+_SHOWN = 200
+#: Longest text that a key has, and longest path of a file.
+LONGEST_TEXT, LONGEST_PATH = 200, 4000
+#: What a number other than 0 is at least and at most in size, by unit: beyond it is a slip of the unit, and products of such numbers leave the range of floats.
+SIZES = {
+	"m": (1e-9, 1e4), "m/s": (1e-12, 1e4), "s": (1e-15, 1e9), "Pa": (1e-3, 1e15), "N": (1e-12, 1e12), "N m": (1e-18, 1e9), "kg/m3": (1e-3, 1e9), "": (1e-15, 1e9)
+}  # fmt: skip
 
 
 class ConfigError(ValueError):
@@ -20,7 +31,29 @@ class ConfigError(ValueError):
 
 	def __init__(self, path, value, wrong, fix):
 		self.path, self.value = path, value
-		super().__init__(f"{path} = {value!r}: {wrong}; fix: {fix}")
+		super().__init__(f"{path} = {shown(value)}: {wrong}; fix: {fix}")
+
+
+def shown(value):
+	"""The value as a message shows it, on one line and not longer than a line or two."""
+	try:
+		text = ascii(value) if isinstance(value, str) and not value.isprintable() else repr(value)
+	except (ValueError, RecursionError):  # Python writes no integer of more than 4300 digits
+		text = f"<{type(value).__name__}>"
+	return text if len(text) <= _SHOWN else text[: _SHOWN // 2] + " ... " + text[-_SHOWN // 4 :]
+
+
+def plainText(path, value, longest):
+	"""``value``, a text, checked: printable characters of no more than ``longest``.
+
+	:raises ConfigError: it has control characters, halves of characters (lone surrogates) or is too long.
+	"""
+	odd = next((character for character in value if unicodedata.category(character) in ("Cc", "Cs")), None)
+	if odd is not None:
+		raise ConfigError(path, value, f"has the character U+{ord(odd):04X}, which no text line has", "leave it out")
+	if len(value) > longest:
+		raise ConfigError(path, value, f"has {len(value)} characters", f"give at most {longest}")
+	return value
 
 
 @dataclasses.dataclass(frozen=True)
@@ -28,7 +61,7 @@ class Key:
 	"""What is known of one key.
 
 	``low`` and ``high`` are inclusive unless the matching ``open...`` is set. ``free``: the value may differ when a test is resumed, since it does
-	not change what has been computed. ``infinite``: inf (YAML's .inf) is a value.
+	not change what has been computed. ``infinite``: inf (YAML's .inf) is a value. ``longest``: characters of a text.
 	"""
 
 	doc: str
@@ -40,6 +73,7 @@ class Key:
 	choices: tuple = ()
 	free: bool = False
 	infinite: bool = False
+	longest: int = LONGEST_TEXT
 
 	def range(self):
 		"""The allowed values in words, '' when everything of the type is allowed."""
@@ -122,6 +156,8 @@ def _number(path, value, kind, spec):
 		number = float(value)
 	except (TypeError, ValueError):
 		raise ConfigError(path, value, f"is not {wanted}", fix) from None
+	except OverflowError:
+		raise ConfigError(path, value, "is larger than any number of a computer", fix) from None
 	if not math.isfinite(number) and not (spec.infinite and number == math.inf):
 		raise ConfigError(path, value, "is not finite", fix)
 	if kind is int:
@@ -130,6 +166,9 @@ def _number(path, value, kind, spec):
 		number = int(value) if isinstance(value, int) else int(number)
 	if not spec.holds(number):
 		raise ConfigError(path, value, f"is out of range, {spec.range()} is allowed", fix)
+	least, most = SIZES[spec.unit]
+	if kind is float and number != 0 and not least <= abs(number) <= most and number != math.inf:
+		raise ConfigError(path, value, f"is beyond what a test can have, {least:g} to {most:g} {spec.unit}".rstrip(), f"check the unit and {fix}")
 	return number
 
 
@@ -152,7 +191,7 @@ def _value(path, value, annotation, spec):
 		return value
 	if not isinstance(value, str) and not hasattr(value, "__fspath__"):
 		raise ConfigError(path, value, "is not text", "give text" + (f": {spec.range()}" if spec.choices else ""))
-	value = str(value)
+	value = plainText(path, str(value), spec.longest)
 	if spec.choices and value not in spec.choices:
 		raise ConfigError(path, value, "is not one of the choices", f"{_guess(value, spec.choices)}use {spec.range()}")
 	return value

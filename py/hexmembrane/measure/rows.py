@@ -130,6 +130,7 @@ def row(scene, grains, reference, stage, elapsed):
 		"membrane_axial_mid": loads.axialPullMiddle,
 		"membrane_axial_end": loads.axialPullEnd,
 		"sigma3_membrane": loads.radialPressure,
+		"sigma3_distance": (boundary.transmittedPressure(3) - boundary.pressure) / pressure if pressure > 0 else 0.0,
 	}
 
 

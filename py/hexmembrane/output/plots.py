@@ -32,7 +32,7 @@ def plot(recordsPath, pngPath, title=""):
 	FigureCanvasAgg(figure)
 	upper, middle, lower = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
 	if title:
-		figure.suptitle(title)
+		figure.suptitle(title, parse_math=False)
 
 	upper.plot(strain, column("q", 1e-3), color="#1f4e79", lw=1.8)
 	upper.set_ylabel("deviatoric stress of the soil q [kPa]")

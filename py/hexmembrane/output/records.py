@@ -145,6 +145,12 @@ COLUMNS = (
 		"part of the membrane's own tension in what its main body transmits: forces of bonds, bending and self-contact towards the axis over the same "
 		"area; inwards positive; 0 with a rigid wall",
 	),
+	Column(
+		"sigma3_distance",
+		"-",
+		"distance of sigma3_transmitted_group3 from what the lateral boundary is to hold, over sigma3_target: of a rigid wall from sigma3, of the membrane from "
+		"sigma3 in consolidation and from what consolidation ended with in shear; positive when too high",
+	),
 )
 
 _TEXT = ("stage",)

@@ -122,7 +122,8 @@ class Store:
 				return Resumed(checkpoint, kept, [fault + used for fault in faults] + self._unused(checkpoint) + self._others())
 			faults.append(wrong)
 		raise CheckpointError(
-			f"checkpoint = '{self.folder}': no checkpoint is whole ({'; '.join(faults)}); fix: put the files back as they were, or run without --resume in another folder"
+			f"checkpoint = '{self.folder}': no checkpoint is whole ({'; '.join(faults)}); "
+			"fix: put the files back as they were, or run without --resume in another folder"
 		)
 
 	def _fault(self, checkpoint):

@@ -2,17 +2,23 @@
 """The command line ``scripts/run CONFIG --out DIR``."""
 
 import argparse
+import contextlib
 import os
 import pathlib
+import signal
 import sys
 
 from yade import O
 
 from hexmembrane import configuration
 from hexmembrane.configuration import ConfigError
+from hexmembrane.configuration.schema import LONGEST_PATH, plainText
+from hexmembrane.run import checkpoints
+from hexmembrane.run.estimate import requireThreads
 from hexmembrane.run.lock import LockError
 from hexmembrane.run.manifest import CheckpointError
 from hexmembrane.run.pipeline import STAGES, run
+from hexmembrane.run.progress import tell
 
 
 def _arguments(argv):
@@ -27,32 +33,54 @@ def _arguments(argv):
 
 
 def _restartWithThreads(wanted):
-	"""YADE's number of threads is fixed at its start: start its program once more with the wished one."""
+	"""YADE's number of threads is fixed at its start: the launcher of scripts/run, which says where it is, starts once more with the wished one."""
 	if wanted is None or wanted == O.numThreads:
 		return
-	program = getattr(sys, "yade_argv", [None])[0]
-	if not program or os.environ.get("HEXMEMBRANE_RESTARTED"):
-		raise ConfigError("numerics.threads", wanted, f"YADE runs with {O.numThreads}", f"start it with -j {wanted}")
+	launcher = os.environ.get("HEXMEMBRANE_LAUNCHER")
+	if not launcher or os.environ.get("HEXMEMBRANE_RESTARTED"):
+		raise ConfigError("numerics.threads", wanted, f"YADE runs with {O.numThreads}", f"start YADE with -j {wanted}, or use scripts/run")
 	os.environ["HEXMEMBRANE_RESTARTED"] = "1"
-	sys.stdout.flush()
-	os.execv(sys.executable, [sys.executable, program, "-n", "-x", "-j", str(wanted), *sys.argv])
+	signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})  # the launcher takes them on
+	os.execv(sys.executable, [sys.executable, launcher, str(wanted), *sys.argv])
+
+
+class Terminated(KeyboardInterrupt):
+	"""The signal SIGTERM, at the end of a chunk of steps."""
+
+
+@contextlib.contextmanager
+def _terminable():
+	"""Within it SIGTERM raises :class:`Terminated`."""
+
+	def end(number, frame):
+		raise Terminated
+
+	before = signal.signal(signal.SIGTERM, end)
+	try:
+		yield
+	finally:
+		signal.signal(signal.SIGTERM, before)
 
 
 def main(argv):
-	"""The command line; returns the exit code: 0, 2 for bad input, 1 for a test that failed, 130 when interrupted."""
+	"""The command line; returns the exit code: 0, 2 for bad input, 1 for a test that failed, 130 when interrupted, 143 when terminated."""
 	arguments = _arguments(argv)
+	out = None
 	try:
-		config = configuration.load(arguments.config)
-		_restartWithThreads(config.numerics.threads)
-		out = arguments.out or pathlib.Path("out", pathlib.Path(arguments.config).stem)
-		run(config, out, arguments.resume, arguments.until, arguments.start, arguments.quiet)
+		with _terminable():
+			config = configuration.load(arguments.config)
+			requireThreads(config)
+			_restartWithThreads(config.numerics.threads)
+			out = pathlib.Path(plainText("--out", arguments.out or os.path.join("out", pathlib.Path(arguments.config).stem), LONGEST_PATH))
+			run(config, out, arguments.resume, arguments.until, arguments.start, arguments.quiet)
 	except (ConfigError, CheckpointError, LockError) as error:
-		print(f"error: {error}", file=sys.stderr)
+		tell(f"error: {error}", sys.stderr)
 		return 2
 	except (ValueError, RuntimeError, OSError) as error:
-		print(f"error: {error}", file=sys.stderr)
+		tell(f"error: {error}", sys.stderr)
 		return 1
-	except KeyboardInterrupt:
-		print("interrupted: --resume goes on from the last checkpoint", file=sys.stderr)
-		return 130
+	except KeyboardInterrupt as signalled:
+		how, code = ("terminated", 143) if isinstance(signalled, Terminated) else ("interrupted", 130)
+		tell(how + (": --resume goes on from the last checkpoint" if out and checkpoints.exist(out) else ", there is no checkpoint yet"), sys.stderr)
+		return code
 	return 0

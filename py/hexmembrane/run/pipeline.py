@@ -10,7 +10,7 @@ from hexmembrane import configuration
 from hexmembrane.configuration import Config, ConfigError, toDict
 from hexmembrane.configuration.schema import freeKeys
 from hexmembrane.output.plots import plot
-from hexmembrane.run import checkpoints, stages
+from hexmembrane.run import checkpoints, estimate, progress, stages
 from hexmembrane.run.checkpoints import FolderError, Store
 from hexmembrane.run.lock import FolderLock
 from hexmembrane.run.manifest import CheckpointError
@@ -94,12 +94,18 @@ def _wantOwnSettings(config):
 		)
 
 
-def _settle(config, say):
-	"""Choose what ``accuracy`` leaves open; the error budget of the settings."""
+def prepare(config, out, say):
+	"""Choose what ``accuracy`` leaves open, say what the test needs, refuse what cannot be; the error budget of the settings."""
+	estimate.requireThreads(config)
+	estimate.requireTravel(config)
 	radii = specimen.plannedRadii(config)
 	if config.accuracy is not None:
 		chosen = accuracy.choose(config, radii)
 		say(f"accuracy {100 * config.accuracy:g} %: " + ", ".join(f"{key} = {value:g}" for key, value in chosen.items()))
+	estimate.requireStiffness(config)
+	needs = estimate.Estimate.of(config, radii)
+	needs.require(config, estimate.Machine.here(out))
+	say(needs.line())
 	budget = accuracy.budget(config, radii)
 	for line in budget.lines():
 		say(line)
@@ -122,31 +128,35 @@ def run(config, out, resume=False, until="shear", start=None, quiet=False):
 		raise ConfigError("--until", until, "is no stage", f"use {', '.join(STAGES)}")
 	if resume and start is not None:
 		raise ConfigError("--from", str(start), "a resumed test starts from its own checkpoint", "leave out one of --from and --resume")
+	if start is not None:
+		_wantOwnSettings(config)
+	settled = []
+	budget = prepare(config, out, settled.append)
 	out = _madeFolder(out)
 
 	def say(text):
 		if not quiet:
-			print(text, flush=True)
+			progress.tell(text)
 
 	def tell(text):
-		print(text, file=sys.stderr, flush=True)
+		progress.tell(text, sys.stderr)
 
 	store = None
 	try:
 		with FolderLock(out):
 			store = _storeOf(out, resume)
-			return _run(config, store, until, start, quiet, say, tell)
+			return _run(config, budget, settled, store, until, start, quiet, say, tell)
 	except OSError as error:
-		if error.errno is None or isinstance(error, BrokenPipeError):
-			raise  # it says what is wrong, or is of a stream
+		if error.errno is None:
+			raise  # it says what is wrong
 		raise FolderError(error, out, store is not None and store.begun) from None
 
 
-def _run(config, store, until, start, quiet, say, tell):
+def _run(config, budget, settled, store, until, start, quiet, say, tell):
 	out, resume = store.folder, store.begun
-	if start is not None:
-		_wantOwnSettings(config)
-	budget = _settle(config, (lambda text: None) if resume else say)
+	if not resume:
+		for line in settled:
+			say(line)
 	if resume:
 		resumed = _goOn(config, store, tell)
 		builder.setTier(config)

@@ -1,8 +1,35 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How far a run is: a bar (tqdm) on a terminal, plain lines elsewhere."""
+"""How far a run is: a bar (tqdm) on a terminal, plain lines elsewhere. A stream that fails never ends a test."""
 
 import sys
 import time
+
+
+class Steady:
+	"""A text stream that loses what cannot be written: its reader has gone, its disk is full, its terminal has hung up."""
+
+	def __init__(self, stream):
+		self._stream = stream
+
+	def write(self, text):
+		try:
+			return self._stream.write(text)
+		except (OSError, ValueError, AttributeError):  # ValueError: closed; AttributeError: None, Python's stream without a file descriptor
+			return len(text)
+
+	def flush(self):
+		try:
+			self._stream.flush()
+		except (OSError, ValueError, AttributeError):
+			pass
+
+	def __getattr__(self, name):
+		return getattr(self._stream, name)
+
+
+def tell(text, stream=None):
+	"""Print a line to ``stream``, by default standard output; one that fails loses the line, and the test goes on."""
+	print(text, file=Steady(sys.stdout if stream is None else stream), flush=True)
 
 
 def clock(seconds):
@@ -25,7 +52,7 @@ class Progress:
 
 	def __init__(self, stage, quiet=False, stream=None, every=5.0):
 		self.stage, self.quiet, self.every = stage, quiet, every
-		self.stream = sys.stderr if stream is None else stream
+		self.stream = Steady(sys.stderr if stream is None else stream)
 		self.started = time.monotonic()
 		self.begun = None
 		self.said = -float("inf")
@@ -64,7 +91,7 @@ class Progress:
 		now = time.monotonic()
 		if now - self.said >= self.every or done == 1.0:
 			self.said = now
-			print(line, file=self.stream, flush=True)
+			tell(line, self.stream)
 
 	def say(self, text):
 		"""A line of its own, above the bar if there is one."""
@@ -73,7 +100,7 @@ class Progress:
 		if self.bar is not None:
 			self.bar.write(text, file=self.stream)
 		else:
-			print(text, file=self.stream, flush=True)
+			tell(text, self.stream)
 
 	def close(self):
 		if self.bar is not None:

@@ -18,6 +18,7 @@ from hexmembrane.output.frames import Frames
 from hexmembrane.output.records import Records
 from hexmembrane.run.checkpoints import RECORDS, Store
 from hexmembrane.run.manifest import Checkpoint, Entry
+from hexmembrane.run.pressure_watch import PressureWatch
 from hexmembrane.run.progress import Progress
 from hexmembrane.run.states import Image, load
 from hexmembrane.scene import timestep
@@ -28,7 +29,8 @@ from hexmembrane.scene.handles import Scene
 RAMP_PARTS = 100
 #: Share of the pressure that the ramp begins with: servos hold no stress of 0.
 _FIRST = 0.01
-
+#: Steps that YADE is asked for at once: a signal waits for their end. A multiple of the usual numerics.substeps.
+_AT_ONCE = 5000
 #: Share of the height that consolidation may take, for what is checked before it.
 _SHORTER = 0.1
 
@@ -94,10 +96,14 @@ class TriaxialTest:
 		:raises StageError: YADE stopped before.
 		"""
 		wanted, why = O.iter + steps, None
-		try:
-			O.run(steps, True)
-		except RuntimeError as error:
-			why = str(error)
+		while O.iter < wanted and not why:
+			end = min(wanted, O.iter + _AT_ONCE)
+			try:
+				O.run(end - O.iter, True)
+			except RuntimeError as error:
+				why = str(error)
+			if O.iter != end:
+				break
 		if why or O.iter != wanted:
 			why = why or _lostError()
 			raise StageError(
@@ -281,9 +287,10 @@ class TriaxialTest:
 	def shear(self):
 		"""Shear from the consolidated state to the wished strain, one row at each equal part of it; leaves ``sheared.yade.gz``.
 
-		:raises StageError: the platens do not move as asked.
+		:raises StageError: the platens do not move as asked; the pressure is not held and ``shear.stopOutsideTolerance`` is set.
 		"""
 		keys = self.config.shear
+		watch = PressureWatch(keys, self.scene.lateralBoundary.name)
 		total = self.config.output.records
 		with Progress("shear", self.quiet) as progress:
 			self._announceShear(progress)
@@ -294,6 +301,10 @@ class TriaxialTest:
 			while self.rowCount <= total:
 				self._until(keys.strain * self.rowCount / total)
 				self.row()
+				if said := watch.strayed(self.lastRow):
+					if keys.stopOutsideTolerance:
+						raise StageError(f"{said}; the last checkpoint is in '{self.out}'")
+					progress.say(f"WARNING: {said}")
 				self._show(progress, (self.rowCount - 1) / total)
 				every = self.config.output.vtkEvery
 				if every and ((self.rowCount - 1) % every == 0 or self.rowCount > total):
@@ -301,7 +312,7 @@ class TriaxialTest:
 				if self._checkpointDue():
 					checkTimeStep(self.config, self.scene, progress.say)
 				self._maybeCheckpoint()
-			self._report(progress)
+			self._report(progress, watch)
 		self.checkpoint("sheared")
 
 	def _until(self, strain):
@@ -334,12 +345,12 @@ class TriaxialTest:
 			+ ("" if inertial <= QUASISTATIC else f"; WARNING: above {QUASISTATIC:g} this is not quasi-static; fix: lower shear.velocity")
 		)
 
-	def _report(self, progress):
+	def _report(self, progress, watch):
 		row = self.lastRow
 		progress.say(
 			f"sheared to {100 * row['axial_strain']:.2f} %: q {1e-3 * row['q']:.1f} kPa, volumetric strain "
 			f"{100 * row['volumetric_strain_radius']:.2f} % (Eq. 6) and {100 * row['volumetric_strain_volume']:.2f} % (volume), "
-			f"transmitted {1e-3 * row['sigma3_transmitted_group3']:.2f} kPa, broken bonds {row['bonds_broken']}"
+			f"transmitted {1e-3 * row['sigma3_transmitted_group3']:.2f} kPa ({watch.summary(self.records.path)}), broken bonds {row['bonds_broken']}"
 			+ (f", energy balance off by {100 * row['energy_error']:.2g} %" if O.trackEnergy else "")
 		)
 
@@ -369,7 +380,8 @@ def checkRows(config):
 	bottom, top = Scene().faces()
 	largest = mostRows(config, (1 - _SHORTER) * (top - bottom))
 	if config.output.records > largest:
-		raise ConfigError("output.records", config.output.records, f"is finer than the steps of shear, of {O.dt:.4g} s", f"at most {largest}, or a lower shear.velocity")
+		wrong = f"is finer than the steps of shear, of {O.dt:.4g} s"
+		raise ConfigError("output.records", config.output.records, wrong, f"at most {largest}, or a lower shear.velocity")
 
 
 def _lostError():

@@ -18,7 +18,11 @@ import re
 
 import numpy
 
+from hexmembrane.configuration.schema import shown
+
 _FACTORS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6}
+#: Characters of a file at most.
+_LONGEST = 1_000_000
 
 
 def _reject(what, value, wrong, fix):
@@ -301,7 +305,10 @@ def _rejectLine(path, line, what, wrong, fix):
 def _readRows(path):
 	"""[(diameter in m, percent passing, line number)] in the file's order."""
 	with open(path, encoding="utf-8-sig", errors="replace") as file:
-		lines = [(i, text.strip()) for i, text in enumerate(file, 1)]
+		text = file.read(_LONGEST + 1)
+	if len(text) > _LONGEST:
+		_rejectLine(path, 1, "the file", f"longer than the {_LONGEST} characters that a gradation may have", "a row for each sieve, and nothing else")
+	lines = [(i, text.strip()) for i, text in enumerate(text.split("\n"), 1)]
 	lines = [(i, text) for i, text in lines if text and not text.startswith("#")]
 	if not lines:
 		_rejectLine(path, 1, "empty file", "no header and no rows", "'diameter (mm), percent passing' and a row for each sieve")
@@ -309,22 +316,22 @@ def _readRows(path):
 	separator = next((s for s in ";\t" if s in header), ",")
 	unit = re.findall(r"(?<![^\W_])(mm|m|um|µm|μm)(?![^\W_])", header.split(separator)[0])
 	if len(unit) != 1:
-		_rejectLine(path, number, repr(header), "the first column has no unit", "a header line such as 'diameter (mm), percent passing'")
+		_rejectLine(path, number, shown(header), "the first column has no unit", "a header line such as 'diameter (mm), percent passing'")
 	rows = []
 	for number, text in lines[1:]:
 		fields = [field.strip() for field in text.split(separator)]
 		if len(fields) != 2:
-			_rejectLine(path, number, repr(text), f"{len(fields)} columns, not two", f"'diameter{separator} percent'")
+			_rejectLine(path, number, shown(text), f"{len(fields)} columns, not two", f"'diameter{separator} percent'")
 		if separator != ",":
 			fields = [field.replace(",", ".") for field in fields]
 		try:
 			diameter, percent = (float(field) for field in fields)
 		except ValueError:
-			_rejectLine(path, number, repr(text), "not two numbers", f"'diameter{separator} percent', the unit in the header only")
+			_rejectLine(path, number, shown(text), "not two numbers", f"'diameter{separator} percent', the unit in the header only")
 		if not (math.isfinite(diameter) and diameter > 0):
-			_rejectLine(path, number, repr(text), "the diameter is not a finite number > 0", f"the sieve's opening in {unit[0]}")
+			_rejectLine(path, number, shown(text), "the diameter is not a finite number > 0", f"the sieve's opening in {unit[0]}")
 		if not 0 <= percent <= 100:
-			_rejectLine(path, number, repr(text), "the percentage is outside 0 .. 100", "percent of the mass that passes")
+			_rejectLine(path, number, shown(text), "the percentage is outside 0 .. 100", "percent of the mass that passes")
 		rows.append((diameter * _FACTORS[unit[0]], percent, number))
 	if len(rows) < 2:
 		_rejectLine(path, lines[-1][0], f"{len(rows)} rows", "a curve has two points or more", "a row for each sieve")

@@ -26,10 +26,14 @@ import tempfile
 
 import numpy
 
+from hexmembrane.configuration.schema import shown
+
 MAGIC = "hexmembrane packing"
 VERSION = 1
 #: A header longer than this is no header.
 _LONGEST_HEADER = 100000
+#: Bytes of a file at most: a million lines of four numbers with all digits, and a header.
+_LONGEST = 120_000_000
 #: What rounding may change in a porosity, and in an overlap over the mean radius.
 _ROUNDING = 1e-9
 
@@ -178,11 +182,13 @@ def load(path):
 		a missing or contradicting header entry, a line without four finite numbers, a radius that is not positive, spheres outside the
 		cylinder or overlapping by more than the header states, a file that was cut off. :raises OSError: when it cannot be read.
 	"""
-	with open(path, "rb") as file:
-		data = file.read()
-
 	def wrong(line, what, fix="take the file as it was written, or make the packing again"):
 		raise ValueError(f"{os.fspath(path)}, line {line}: {what}; fix: {fix}")
+
+	with open(path, "rb") as file:
+		data = file.read(_LONGEST + 1)
+	if len(data) > _LONGEST:
+		wrong(1, f"longer than {_LONGEST} bytes, which is enough for a million grains")
 
 	try:
 		lines = data.decode("utf-8").split("\n")
@@ -258,7 +264,7 @@ def _header(text, wrong):
 			wrong(2, f"the header has no '{key}'")
 	for key in ("radius", "height", "porosity", "maxOverlap"):
 		if not _isNumber(header[key]) or header[key] < 0:
-			wrong(2, f"'{key}' is {header[key]!r}, not a finite number >= 0")
+			wrong(2, f"'{key}' is {shown(header[key])}, not a finite number >= 0")
 	if isinstance(header["grains"], bool) or not isinstance(header["grains"], int) or header["grains"] < 1:
 		wrong(2, f"'grains' is {header['grains']!r}, not a number of spheres")
 	if not isinstance(header["origin"], list) or len(header["origin"]) != 3 or not all(_isNumber(v) for v in header["origin"]):

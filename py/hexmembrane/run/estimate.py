@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a test needs, told before anything is made: steps, time, memory, disk. What is beyond the machine is refused. Uses nothing of YADE.
+
+Estimates, good to a factor of two: the time step is that of the grains, the membrane's contacts and its bonds; what comes after the pressure's rise
+is taken to last 1.5 times as long as the rise.
+"""
+
+import dataclasses
+import math
+import os
+import pathlib
+import shutil
+
+from hexmembrane.configuration import ConfigError
+from hexmembrane.run.progress import clock
+from hexmembrane.scene import timestep
+
+#: Time [s] of one step of one sphere on one thread, by tier: README.md, Speed.
+SECONDS = {"compact": 1.1e-3 / 19429, "reference": 29 * 1.1e-3 / 19429}
+#: Memory [bytes]: of YADE, Python and the picture; of a sphere with its contacts. Measured with 3,416 and 15,328 spheres in both tiers: 300 MB, 4 kB, and 80 MB for the picture.
+PROGRAM, SPHERE = 400e6, 6e3
+#: Disk [bytes] a sphere: a kept state, a last checkpoint, a VTK frame; bytes of a row. Measured with 3,416 spheres.
+STATE, CHECKPOINT, FRAME, ROW = 220, 1000, 120, 1000
+#: Largest number of steps of the pressure's rise, and of the shear: at 20 us a step, that of a few hundred spheres, they take six hours.
+MOST_STEPS = 10**9
+#: Largest number of threads a processor: more of them only wait for each other.
+MOST_THREADS = 4
+#: Least kn/(p d): grains overlap by about d over this number, and below it the specimen is no longer one of grains.
+LEAST_LEVEL = 10
+#: The pressure's rise of a test that says none, in d sqrt(rho/p).
+RISE = 30
+
+
+@dataclasses.dataclass
+class Machine:
+	"""What there is: processors, memory [bytes] that can be had, free disk [bytes]."""
+
+	processors: int
+	memory: float
+	disk: float
+
+	@classmethod
+	def here(cls, out="."):
+		"""This machine, and the disk on which the folder ``out`` is or would be."""
+		folder = pathlib.Path(out).absolute()
+		while not folder.is_dir() and folder != folder.parent:
+			folder = folder.parent
+		return cls(len(os.sched_getaffinity(0)), _freeMemory(), shutil.disk_usage(folder).free)
+
+
+def _freeMemory():
+	"""Memory that can be had [bytes]: of the machine, and of the control group (container, batch job) that limits it."""
+	free = math.inf
+	try:
+		with open("/proc/meminfo", encoding="ascii") as lines:
+			free = next((float(line.split()[1]) * 1024 for line in lines if line.startswith("MemAvailable:")), math.inf)
+		limit, used = (pathlib.Path("/sys/fs/cgroup", name).read_text(encoding="ascii") for name in ("memory.max", "memory.current"))
+		if limit.strip() != "max":
+			free = min(free, float(limit) - float(used) + _cached())
+	except (OSError, ValueError):
+		pass  # no such file on this machine: it sets no such limit
+	return free
+
+
+def _cached():
+	"""Bytes of the control group's memory that are files, which give way."""
+	with open("/sys/fs/cgroup/memory.stat", encoding="ascii") as lines:
+		return next((float(line.split()[1]) for line in lines if line.startswith("inactive_file ")), 0.0)
+
+
+@dataclasses.dataclass
+class Estimate:
+	"""What a test needs.
+
+	:param grains, membrane: spheres of either.
+	:param step: time step [s].
+	:param rise, shear: steps of the pressure's rise and of the shear.
+	:param consolidation: steps of the whole consolidation.
+	:param seconds: time of the steps [s] on one thread.
+	:param memory, disk: bytes.
+	"""
+
+	grains: int
+	membrane: float
+	step: float
+	rise: float
+	consolidation: float
+	shear: float
+	seconds: float
+	memory: float
+	disk: float
+
+	@classmethod
+	def of(cls, config, radii):
+		"""The estimate for a configuration.
+
+		:param config: checked configuration, ``accuracy`` chosen.
+		:param radii: of its grains [m].
+		"""
+		particles, particleRadius = _membrane(config, float(radii.min()))
+		step = _step(config, radii, particleRadius)
+		keys, shear = config.consolidation, config.shear
+		rise = (keys.rampTime or RISE * timestep.inertialTime(radii, config.specimen.density, keys.pressure)) / step
+		consolidation = min(2.5 * rise + config.output.consolidationSteps, keys.maxSteps)
+		sheared = (shear.strain + shear.rampStrain) * config.specimen.height / (shear.velocity * step)
+		spheres = len(radii) + particles
+		frames = config.output.records / config.output.vtkEvery + 2 if config.output.vtkEvery else 0
+		rows = config.output.records + consolidation / config.output.consolidationSteps
+		return cls(
+			grains=len(radii),
+			membrane=particles,
+			step=step,
+			rise=rise,
+			consolidation=consolidation,
+			shear=sheared,
+			seconds=(consolidation + sheared) * spheres * SECONDS[config.tier],
+			memory=PROGRAM + SPHERE * spheres,
+			disk=spheres * (3 * STATE + 3 * CHECKPOINT + FRAME * frames) + ROW * rows,
+		)
+
+	def line(self):
+		"""The estimate in one line of the log."""
+		return (
+			f"work: {self.grains + self.membrane:,.0f} spheres, about {_rounded(self.consolidation)} steps of consolidation and {_rounded(self.shear)} of shear, "
+			f"{clock(self.seconds)} for the steps on one thread; memory {_size(self.memory)}, disk {_size(self.disk)}"
+		)
+
+	def require(self, config, machine):
+		"""Check that the machine has what the test needs.
+
+		:raises ConfigError: it has not, or the steps are more than MOST_STEPS; the message says what would do.
+		"""
+		shear, grains = config.shear, config.specimen
+		if self.rise > MOST_STEPS:
+			raise ConfigError(
+				"consolidation.rampTime", config.consolidation.rampTime, f"takes {_rounded(self.rise)} steps of {self.step:.3g} s, {MOST_STEPS:,} are the most",
+				f"at most {MOST_STEPS * self.step:.3g} s, or larger grains, whose steps are longer",
+			)  # fmt: skip
+		if self.shear > MOST_STEPS:
+			raise ConfigError(
+				"shear.velocity", shear.velocity, f"takes {_rounded(self.shear)} steps of {self.step:.3g} s, {MOST_STEPS:,} are the most",
+				f"at least {shear.velocity * self.shear / MOST_STEPS:.3g} m/s, or larger grains, whose steps are longer",
+			)  # fmt: skip
+		if self.memory > machine.memory:
+			wrong = f"the test needs about {_size(self.memory)} of memory, and {_size(machine.memory)} can be had"
+			if self.membrane > self.grains:
+				name = "sizeRatio" if config.membrane.particleRadius is None else "particleRadius"
+				raise ConfigError(f"membrane.{name}", getattr(config.membrane, name), f"makes {self.membrane:,.0f} spheres: {wrong}", "a larger one, or fewer and larger grains")
+			raise ConfigError("specimen.grains", grains.grains, f"{self.grains:,} grains: {wrong}", "fewer and larger grains")
+		if self.disk > machine.disk:
+			raise ConfigError(
+				"output.vtkEvery", config.output.vtkEvery, f"the test needs about {_size(self.disk)} on the disk, and {_size(machine.disk)} are free",
+				"a larger one, 0 for no VTK, fewer output.records, or another folder with --out",
+			)  # fmt: skip
+
+
+def requireThreads(config, machine=None):
+	"""Check ``numerics.threads`` against the processors there are.
+
+	:raises ConfigError: they are more than MOST_THREADS a processor.
+	"""
+	wanted, processors = config.numerics.threads, (machine or Machine.here()).processors
+	if wanted is not None and wanted > MOST_THREADS * processors:
+		raise ConfigError(
+			"numerics.threads", wanted, f"is more than {MOST_THREADS} a processor, and {processors} are there", f"at most {MOST_THREADS * processors}, best {processors}"
+		)
+
+
+def requireStiffness(config):
+	"""Check that the contacts carry the pressure.
+
+	:raises ConfigError: kn/(p d) is below LEAST_LEVEL.
+	"""
+	emod, pressure = config.specimen.emod, config.consolidation.pressure
+	level = timestep.stiffnessLevel(emod, pressure)
+	if level < LEAST_LEVEL:
+		raise ConfigError(
+			"specimen.emod", emod, f"gives kn/(p d) = {level:.3g} at {pressure:g} Pa, so soft that grains pass through one another; {LEAST_LEVEL} is the least",
+			f"at least {4 * pressure * LEAST_LEVEL / math.pi:.3g} Pa, {4 * pressure * 300 / math.pi:.3g} Pa for small overlaps",
+		)  # fmt: skip
+
+
+def requireTravel(config):
+	"""Check that a platen that was given its thickness is thicker than it travels: grains would come behind it.
+
+	:raises ConfigError: it is not.
+	"""
+	thickness, share = config.platens.thickness, {"top": 1.0, "both": 0.5}[config.shear.moving]
+	travel = share * config.shear.strain * config.specimen.height
+	if thickness is not None and thickness <= travel:
+		raise ConfigError("platens.thickness", thickness, f"is no more than the {travel:.4g} m that a platen travels", f"more than {travel:.4g} m, or leave it out")
+
+
+def _membrane(config, smallest):
+	"""(number, radius [m]) of the membrane's spheres, nearly; (0, None) with a rigid wall."""
+	if config.boundary != "membrane":
+		return 0, None
+	keys, specimen = config.membrane, config.specimen
+	radius = keys.particleRadius or keys.sizeRatio * smallest
+	centre = specimen.radius + (radius if keys.placement == "outside" else 0)
+	rows = max(1, 1 + (specimen.height - 2 * radius) / (math.sqrt(3) * radius)) + 2 * keys.oRingRows
+	return rows * max(6, math.pi * centre / radius), radius
+
+
+def _step(config, radii, particleRadius):
+	"""The time step [s], nearly."""
+	numerics, keys, specimen = config.numerics, config.membrane, config.specimen
+	if numerics.dt is not None:
+		return numerics.dt
+	grains = timestep.grainStep(specimen, radii)
+	if particleRadius is None:
+		return numerics.safety * grains
+	mass = timestep.sphereMass(particleRadius, keys.density)
+	bonds = 2 * math.sqrt(mass / (6 * keys.young * keys.thickness / (math.sqrt(3) * (1 - keys.poisson))))
+	membrane = timestep.membraneStep(specimen, keys.density, float(radii.max()), particleRadius, bonds)
+	return numerics.safety * min(grains, math.sqrt(timestep.densityScaling(keys.densityScaling, grains, membrane)) * membrane)
+
+
+def _rounded(count):
+	"""Two digits of a number, with commas."""
+	return f"{float(f'{count:.2g}'):,.0f}" if count < 1e15 else f"{count:.2g}"
+
+
+def _size(count):
+	for unit, size in (("TB", 1e12), ("GB", 1e9), ("MB", 1e6)):
+		if count >= size:
+			return f"{count / size:.2g} {unit}" if count < 100 * size else f"{count / size:,.0f} {unit}"
+	return f"{count / 1e3:.2g} kB"
