@@ -4,7 +4,7 @@
 # started by the root's own loader), with the host's files at their usual places (enterRoot).
 
 # Raised when the way the root is made changes, so that older ones are made anew.
-rootRecipe=1
+rootRecipe=2
 
 rootHash() { { echo "$rootRecipe $yadeVersion" && listOf packages && listOf root-only && listOf leftout && listOf excludes; } | sha256sum | cut -c 1-12; }
 
@@ -91,7 +91,7 @@ setUpRoot() {
 		exec 9>&-
 		return
 	fi
-	say "first set-up: a private Debian 13 root with YADE, compiler and libraries (about 550 MB to download, 2 GB on disk)"
+	say "first set-up: a private Debian 13 root with YADE, compiler and libraries (about 560 MB to download, 2.1 GB on disk)"
 	say "in $root"
 	local freeKb
 	freeKb=$(df -Pk "$cache" | awk 'NR == 2 { print $4 }')
@@ -168,6 +168,9 @@ finishRoot() {
 	echo /usr/lib/x86_64-linux-gnu/openblas-pthread >"$tree/etc/ld.so.conf.d/openblas.conf"
 	for name in passwd group hosts resolv.conf; do [[ -e $tree/etc/$name ]] || : >"$tree/etc/$name"; done
 	[[ -f /etc/localtime && ! -e $tree/etc/localtime ]] && : >"$tree/etc/localtime"
+	# Snakemake imports a library that wants the authorities' certificates, whether or not it talks to anybody.
+	mkdir -p "$tree/etc/ssl/certs"
+	cat "$tree"/usr/share/ca-certificates/mozilla/*.crt >"$tree/etc/ssl/certs/ca-certificates.crt"
 	enterRoot "$tree"
 	local writable=("${entry[@]/#--ro-bind/--bind}")
 	requireEntry "${writable[@]}"

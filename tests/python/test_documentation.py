@@ -60,7 +60,7 @@ def test_tableOfModules():
 	assert missing == []
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "examples").rglob("*.yaml")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted(path for path in (ROOT / "examples").rglob("*.yaml") if path.parent.name != "sweep"), ids=lambda path: path.stem)
 def test_examplesAreSound(path):
 	"""Every example's configuration passes all checks, is listed in the README, and its grains can be drawn."""
 	config = configuration.load(path)
@@ -76,3 +76,14 @@ def test_quickExampleIsQuasiStatic():
 	inertial = config.shear.velocity / config.specimen.height * diameter * (config.specimen.density / config.consolidation.pressure) ** 0.5
 	assert inertial < 1e-3 and config.shear.strain >= 0.10
 	assert timestep.stiffnessLevel(config.specimen.emod, config.consolidation.pressure) >= 300
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "examples" / "sweep").glob("*.yaml")), ids=lambda path: path.stem)
+def test_studiesAreSound(path, monkeypatch):
+	"""Every study passes all checks and is in its README, as are all keys."""
+	monkeypatch.syspath_prepend(str(ROOT / "scripts" / "sweep.d"))
+	import studyfile
+
+	text = (path.parent / "README.md").read_text(encoding="utf-8")
+	assert studyfile.load(path).runs and path.name in text
+	assert all(f"| `{key}` |" in text for key in studyfile.KEYS)

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""From a checked study to ``plan.json``: its tests, the stages that they share, what each stage will cost. The folder of the plan is moved and archived as a whole."""
+
+import contextlib
+import json
+import pathlib
+import shutil
+
+from dependence import CONSOLIDATION, SHEAR, SPECIMEN, contentOf, givesOwnPorosity, names
+import studyfile
+from hexmembrane.configuration import ConfigError, toDict
+from hexmembrane.configuration.config import PATHS
+from hexmembrane.run import estimate
+from hexmembrane.scene import accuracy, specimen
+
+FORMAT = 1
+NAME, STAGES_FOLDER, INPUTS, RESULT = "plan.json", "stages", "inputs", "result.json"
+#: Start of YADE, picture and files of a stage [s].
+_START = 4.0
+#: Time [s] and bytes of a grain that is packed; bytes of a picture.
+_PACKING_TIME, _PACKING, _PICTURE = 2e-3, 90, 150000
+
+
+def _settled(config):
+	"""The configuration with what ``accuracy`` chooses, and the radii of its grains; one thread, and pictures in VTK only when they are asked for."""
+	radii = specimen.plannedRadii(config)
+	if config.accuracy is not None:
+		accuracy.choose(config, radii)
+	config.accuracy, config.numerics.threads = None, None
+	if "output.vtkEvery" not in config.given:
+		config.output.vtkEvery = 0
+	return radii
+
+
+def _costs(config, radii):
+	"""{stage: (processor time [s], bytes on the disk)}, as a test's own estimate has them.
+
+	:raises ConfigError: the test is beyond this machine, or not sound.
+	"""
+	estimate.requireStiffness(config)
+	estimate.requireTravel(config)
+	needs = estimate.Estimate.of(config, radii)
+	needs.require(config, estimate.Machine.here())
+	spheres = needs.grains + needs.membrane
+	one, kept = spheres * estimate.SECONDS[config.tier], spheres * (estimate.STATE + 2 * estimate.CHECKPOINT)
+	rows = needs.consolidation / config.output.consolidationSteps, config.output.records
+	return {
+		SPECIMEN: (_START + _PACKING_TIME * len(radii), _PACKING * len(radii)),
+		CONSOLIDATION: (_START + one * needs.consolidation, kept + estimate.ROW * rows[0]),
+		SHEAR: (_START + one * needs.shear, kept + estimate.ROW * rows[1] + _PICTURE),
+	}
+
+
+def _keys(config, inputs):
+	"""The configuration as keys for a job; files by their place under the plan's folder, which ``inputs`` collects: place -> file."""
+	keys = toDict(config)
+	for name in PATHS:
+		if (path := keys["specimen"][name]) is not None:
+			place = f"{INPUTS}/{contentOf(path)[:12]}/{pathlib.Path(path).name}"
+			inputs[place] = path
+			keys["specimen"][name] = place
+	if givesOwnPorosity(config):
+		del keys["specimen"]["porosity"]
+	return keys
+
+
+def make(study):
+	"""The plan of a :class:`studyfile.Study` as plain values, and its input files: place under the plan's folder -> file."""
+	runs, jobs, inputs = [], {}, {}
+	for run in study.runs:
+		try:
+			radii = _settled(run.config)
+			stages, costs, before = names(run.config), _costs(run.config, radii), None
+		except ConfigError as error:
+			raise studyfile.wrongRun(run.name, {**run.values, studyfile.SEED: run.seed}, error) from None
+		for stage, name in stages.items():
+			if name not in jobs:
+				keys = _keys(run.config, inputs)
+				if before:
+					keys["specimen"].update(packing=f"{STAGES_FOLDER}/{stages[SPECIMEN]}/test/packing.txt", gradation=None)
+				jobs[name] = {"stage": stage, "before": before, "seconds": round(costs[stage][0], 2), "bytes": round(costs[stage][1]), "config": keys}
+			before = name
+		runs.append({"name": run.name, "values": run.values, "seed": run.seed, "stages": stages})
+	return {"format": FORMAT, "title": study.title, "study": study.source, "axes": study.axes, "attempts": study.attempts, "runs": runs, "jobs": jobs}, inputs
+
+
+def part(plan, runs):
+	"""The plan of some of its runs (their names) alone."""
+	kept = [run for run in plan["runs"] if run["name"] in runs]
+	wanted = {name for run in kept for name in run["stages"].values()}
+	return {**plan, "runs": kept, "jobs": {name: job for name, job in plan["jobs"].items() if name in wanted}}
+
+
+def write(plan, inputs, folder):
+	"""Write plan and inputs into a folder, each by temporary name and rename; nothing is touched that is as it should be."""
+	folder = pathlib.Path(folder)
+	for place, path in inputs.items():
+		target = folder / place
+		if not target.is_file():
+			target.parent.mkdir(parents=True, exist_ok=True)
+			shutil.copyfile(path, target.with_name(target.name + ".part"))
+			target.with_name(target.name + ".part").replace(target)
+	writeText(folder / NAME, json.dumps(plan, indent=1) + "\n")
+
+
+def writeText(path, text):
+	"""Write a file by temporary name and rename, unless it says that already."""
+	with contextlib.suppress(OSError):
+		if path.read_text(encoding="utf-8") == text:
+			return
+	part = path.with_name(path.name + ".part")
+	part.write_text(text, encoding="utf-8")
+	part.replace(path)
+
+
+def read(folder):
+	"""The plan in a folder. :raises OSError, ValueError: there is none."""
+	plan = json.loads((pathlib.Path(folder) / NAME).read_text(encoding="utf-8"))
+	if plan.get("format") != FORMAT:
+		raise ValueError(f"plan = '{folder}': is of format {plan.get('format')}, this version reads {FORMAT}; fix: use the version that wrote it")
+	return plan
+
+
+def result(folder, name):
+	"""What became of a stage, a dict with ``status`` 'done' or 'failed'; None: it has not ended."""
+	try:
+		found = json.loads((pathlib.Path(folder) / STAGES_FOLDER / name / RESULT).read_text(encoding="utf-8"))
+	except (OSError, ValueError):
+		return None
+	return found if isinstance(found, dict) and found.get("status") in ("done", "failed") else None

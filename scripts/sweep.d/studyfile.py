@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A study's file: a base configuration, axes and seeds. All its tests are checked before one runs."""
+
+import dataclasses
+import difflib
+import itertools
+import os
+import pathlib
+
+from dependence import flat, stageOf
+from hexmembrane import configuration
+from hexmembrane.configuration import Config, ConfigError, derived, toDict
+from hexmembrane.configuration.config import PATHS
+from hexmembrane.configuration.reader import read
+
+#: Key of a study's file -> what it is.
+KEYS = {
+	"title": "a name for tables and figures; none: the file's",
+	"base": "a configuration: the name of its file, relative to this one, or its keys",
+	"changes": "keys of all tests that differ from the base",
+	"axes": "key path -> list of its values",
+	"combine": "'product': every value with every other; 'list': the first of each axis, the second of each, ...",
+	"seeds": "list of specimen.seed, or how many, from 1; none: the base's",
+	"attempts": "how often a stage is tried before it counts as failed (2)",
+}
+SEED = "specimen.seed"
+MOST_ATTEMPTS = 20
+
+
+@dataclasses.dataclass
+class Run:
+	"""One test: ``name``, its ``values`` by key path of the axes, ``seed``, checked ``config``."""
+
+	name: str
+	values: dict
+	seed: int
+	config: Config
+
+
+@dataclasses.dataclass
+class Study:
+	"""A checked study."""
+
+	title: str
+	axes: list
+	runs: list
+	attempts: int
+	source: dict
+
+
+def load(path):
+	"""The :class:`Study` in a YAML file.
+
+	:raises ConfigError: the file or one of its tests is wrong; the message says which.
+	"""
+	path = pathlib.Path(path)
+	given = read(path)
+	if not isinstance(given, dict):
+		raise ConfigError("study", str(path), "is not a mapping of keys", "write 'key: value' lines")
+	for name in given:
+		if name not in KEYS:
+			raise ConfigError(f"study.{name}", given[name], "unknown key", f"{_guess(name, KEYS)}known keys are {', '.join(KEYS)}")
+	base = _base(given, path.parent)
+	axes = _axes(given.get("axes"), base, path.parent)
+	seeds = _seeds(given.get("seeds"), base)
+	runs = []
+	for number, (values, seed) in enumerate(itertools.product(_combined(axes, given.get("combine", "product")), seeds), 1):
+		runs.append(_run(number, values, seed, base))
+	for key in axes:
+		if all(stageOf(key, run.config) is None for run in runs):
+			raise ConfigError(f"axes.{key}", axes[key], "changes no result of these tests", "take it out")
+	if len(seeds) > 1 and all(stageOf(SEED, run.config) is None for run in runs):
+		raise ConfigError("seeds", seeds, "change nothing, the packing is a file", "take them out, or give specimen.gradation")
+	return Study(_title(given, path), list(axes), runs, _attempts(given.get("attempts", 2)), given)
+
+
+def _guess(name, known):
+	close = difflib.get_close_matches(str(name), known, 1, 0.6)
+	return f"did you mean '{close[0]}'? " if close else ""
+
+
+def _title(given, path):
+	title = given.get("title", path.name.removesuffix(".yaml"))
+	if not isinstance(title, str):
+		raise ConfigError("study.title", title, "is not text", "give a name")
+	return title
+
+
+def _base(given, folder):
+	base = given.get("base")
+	if isinstance(base, str):
+		config = configuration.load(folder / base)
+	elif isinstance(base, dict):
+		config = Config.of(base, folder)
+	else:
+		raise ConfigError("study.base", base, "is no configuration", f"give {KEYS['base']}")
+	changes = given.get("changes", {})
+	if not isinstance(changes, dict):
+		raise ConfigError("study.changes", changes, "is not a mapping of keys", "write 'key: value' lines")
+	return derived(config, _resolved(changes, folder))
+
+
+def _resolved(changes, folder):
+	"""Changes whose files are named by whole paths."""
+	specimen = changes.get("specimen")
+	if not isinstance(specimen, dict):
+		return changes
+	files = {name: os.path.abspath(os.path.join(folder, os.path.expanduser(specimen[name]))) for name in PATHS if isinstance(specimen.get(name), str)}
+	return {**changes, "specimen": {**specimen, **files}}
+
+
+def nested(values):
+	"""{key path: value} as nested dictionaries."""
+	made = {}
+	for key, value in values.items():
+		*sections, name = key.split(".")
+		place = made
+		for section in sections:
+			place = place.setdefault(section, {})
+		place[name] = value
+	return made
+
+
+def _axes(axes, base, folder):
+	axes = {} if axes is None else axes
+	if not isinstance(axes, dict):
+		raise ConfigError("study.axes", axes, "is not a mapping", "write lines such as 'specimen.friction: [0.3, 0.5]'")
+	known = flat(toDict(base))
+	for key, values in axes.items():
+		if key not in known:
+			raise ConfigError(f"axes.{key}", values, "is no key of a configuration", f"{_guess(key, known)}give a path such as specimen.friction")
+		if key == SEED:
+			raise ConfigError(f"axes.{key}", values, "is what means are taken over", "give it as seeds")
+		if not isinstance(values, list) or not values or any(isinstance(value, (list, dict)) for value in values):
+			raise ConfigError(f"axes.{key}", values, "is not a list of values", "write [first, second, ...]")
+	return {key: [flat(_resolved(nested({key: value}), folder))[key] for value in values] for key, values in axes.items()}
+
+
+def _combined(axes, how):
+	if how not in ("product", "list"):
+		raise ConfigError("study.combine", how, "is not one of the choices", "use 'product' or 'list'")
+	lengths = {key: len(values) for key, values in axes.items()}
+	if how == "list" and len(set(lengths.values())) > 1:
+		raise ConfigError("study.combine", how, f"axes have {lengths} values", "give each axis as many, or combine: product")
+	rows = zip(*axes.values(), strict=True) if how == "list" and axes else itertools.product(*axes.values())
+	return [dict(zip(axes, row)) for row in rows]
+
+
+def _seeds(seeds, base):
+	if seeds is None:
+		return [base.specimen.seed]
+	whole = isinstance(seeds, int) and not isinstance(seeds, bool)
+	if whole and 1 <= seeds <= 100000:
+		return list(range(1, seeds + 1))
+	if whole or not isinstance(seeds, list) or not seeds or len(set(map(str, seeds))) < len(seeds):
+		raise ConfigError("study.seeds", seeds, "is neither a number of seeds nor a list of different ones", "give seeds: 5 or seeds: [1, 2, 7]")
+	return seeds
+
+
+def _attempts(attempts):
+	if isinstance(attempts, bool) or not isinstance(attempts, int) or not 1 <= attempts <= MOST_ATTEMPTS:
+		raise ConfigError("study.attempts", attempts, f"is not a whole number from 1 to {MOST_ATTEMPTS}", "give one")
+	return attempts
+
+
+def wrongRun(name, values, error):
+	"""The error that says which run has another error."""
+	wrong, _, fix = str(error).partition("; fix: ")
+	return ConfigError("study", f"run {name}: " + ", ".join(f"{key} = {value}" for key, value in values.items()), wrong, fix)
+
+
+def _run(number, values, seed, base):
+	name = f"{number:04d}"
+	try:
+		config = derived(base, nested({**values, SEED: seed}))
+	except ConfigError as error:
+		raise wrongRun(name, {**values, SEED: seed}, error) from None
+	checked = flat(toDict(config))
+	return Run(name, {key: checked[key] for key in values}, config.specimen.seed, config)
