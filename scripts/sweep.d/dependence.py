@@ -94,6 +94,7 @@ TABLE = {
 	"shear.strain": (At(CONSOLIDATION, lambda config: config.platens.thickness is None), At(SHEAR)),  # platens are as thick as they travel
 	"shear.pressureTolerance": (At(SHEAR, lambda config: config.shear.stopOutsideTolerance),),
 	"shear.*": _ALWAYS[SHEAR],
+	"measure.*": _ALWAYS[SHEAR],
 	"numerics.threads": (),
 	"numerics.verlet": (At(CONSOLIDATION, _reference),),
 	"numerics.skin": (At(CONSOLIDATION, _compact),),
