@@ -9,12 +9,8 @@ import math
 import os
 from typing import Optional
 
-<<<<<<< HEAD
-from hexmembrane.configuration.schema import LONGEST_PATH, REQUIRED, ConfigError, build, key, paths, section, shared, toDict
-=======
 from hexmembrane.configuration.measure import Measure
-from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, paths, section, shared, toDict
->>>>>>> h-inside
+from hexmembrane.configuration.schema import LONGEST_PATH, REQUIRED, ConfigError, build, key, paths, section, shared, toDict
 
 #: Keys of the specimen that are files.
 PATHS = ("packing", "gradation")
