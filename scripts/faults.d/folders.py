@@ -41,10 +41,13 @@ def mount(what, where, kind, flags, options=None):
 
 
 def full(size, config, work, expected):
-	"""What is odd in a test on a full disk, which has room again afterwards."""
-	mount(b"tmpfs", work, b"tmpfs", 0, f"size={size}k".encode())
+	"""What is odd in a test on a disk that fills up, which has room again afterwards. Room is taken once it has begun: it looks for room before."""
+	mount(b"tmpfs", work, b"tmpfs", 0, b"size=100m")
 	out = work / "out"
 	test = tiny.start(tiny.command(config, out))
+	while test.poll() is None and not out.exists():
+		tiny.time.sleep(0.002)
+	mount(b"tmpfs", work, b"tmpfs", _REMOUNT, f"size={size}k".encode())
 	while test.poll() is None and not _isFull(work):
 		tiny.time.sleep(0.01)
 	code, seconds, errors = tiny.awaitEnd(test)

@@ -14,8 +14,10 @@ from plan import INPUTS, NAME, RESULT, STAGES_FOLDER
 from results import MEANS, PROVENANCE, RECORDS, RUNS
 
 ARCHIVE = "study.tar.gz"
+#: What ``measure`` of a configuration leaves.
+INSIDE = ("regions.csv", "profile.csv", "bands.csv", "fields.h5")
 #: Of a stage: what says what it was and what came out. States can be made again and are left out.
-_KEPT = (RESULT, "job.yaml", "test/config.yaml", "test/packing.txt", "test/records.csv", "test/manifest.json")
+_KEPT = (RESULT, "job.yaml", *(f"test/{name}" for name in ("config.yaml", "packing.txt", "records.csv", "manifest.json", *INSIDE)))
 #: Column that no second run has again.
 _CLOCK = "elapsed"
 #: Largest relative difference of rows that another processor's rounding is let off with.

@@ -83,6 +83,7 @@ def test_everyKeyIsInTheTable(base):
 		({"shear": {"velocity": 0.01}}, SHEAR),
 		({"platens": {"friction": 0.1}}, SHEAR),
 		({"tier": "reference"}, CONSOLIDATION),
+		({"measure": {"slices": 5}}, SHEAR),
 		({"membrane": {"young": 2e6}}, None),
 		({"numerics": {"threads": 2, "verlet": 0.3}}, None),
 		({"title": "another", "output": {"vtkEvery": 3, "checkpointEvery": 5}}, None),
