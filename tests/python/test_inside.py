@@ -15,7 +15,7 @@ from hexmembrane.output.inside import BANDS, PROFILE, REGIONS
 from PIL import Image
 from tinyTest import command, configure, environment, runOutside
 
-MEASURE = {"bands": True, "step": 0.005, "strains": [0, 0.01, 0.02], "spacing": 0.014, "radius": 0.008, "centres": [[0, 0, 0.025]], "slices": 4, "every": 3}
+MEASURE = {"bands": True, "step": 0.005, "strains": [0, 0.01, 0.02], "spacing": 0.007, "radius": 0.008, "centres": [[0, 0, 0.025]], "slices": 4, "every": 3}
 FILES = {"regions": (REGIONS, ()), "profile": (PROFILE, ()), "bands": (BANDS, ("verdict",))}
 
 
@@ -162,6 +162,9 @@ def test_cloudsOfAKnownField(tmp_path):
 	one = clouds.cloud(tmp_path / "fields.h5", None, clouds.Section(0.0))
 	core = np.abs(one.along)[None, :] < 0.01
 	core = core & (np.abs(one.height - 0.02) < 0.01)[:, None]
+	seen = core & np.isfinite(one.values["shear"])  # grains at random leave pores, which are outside
+	assert seen.sum() > 0.8 * core.sum()
+	core = seen
 	assert np.abs(one.values["shear"] - one.height[:, None])[core].max() < 1e-3
 	assert one.values["rotation"][core] == pytest.approx(math.degrees(0.1)) and one.values["coordination"][core] == pytest.approx(5)
 	assert one.values["porosity"][core] == pytest.approx(1 - 4 / 3 * math.pi * 1e-9 / 1e-8)
