@@ -5,19 +5,11 @@ Every row is written whole and flushed, so that a killed run leaves a readable f
 checkpoint and goes on. Strains count from the start of the row's stage (``stage`` column). Needs no YADE.
 """
 
-import contextlib
-import errno
-import hashlib
-import math
-import os
-import pathlib
-
-import numpy
-
+from hexmembrane.output import tables
 from hexmembrane.output.tables import Column
 
 COLUMNS = (
-	Column("stage", "", "consolidation or shear"),
+	Column("stage", "", "consolidation or shear", text=True),
 	Column("step", "", "YADE's step, O.iter"),
 	Column("time", "s", "YADE's time, O.time"),
 	Column("axial_strain", "-", "eps1 = (h0 - h)/h0 with h the distance of the platens' faces; compression positive"),
@@ -142,133 +134,22 @@ COLUMNS = (
 _TEXT = ("stage",)
 
 
-class Kept:
-	"""The first bytes of a records.csv, up to a checkpoint; ``sha256``: theirs.
-
-	:param path: the file.
-	:param size: how many bytes (a checkpoint's :meth:`Records.position`).
-	:raises ValueError: the file is shorter, cannot be read or has other columns.
-	"""
+class Kept(tables.Kept):
+	"""The first bytes of a records.csv, see :class:`hexmembrane.output.tables.Kept`."""
 
 	def __init__(self, path, size):
-		self.path = pathlib.Path(path)
-		try:
-			found = self.path.stat().st_size if self.path.is_file() else 0
-			if found < size:
-				raise ValueError(f"records = '{path}': has {found} bytes, its checkpoint was taken at {size}; fix: put the file back or start anew")
-			with open(self.path, "rb") as file:
-				self._data = file.read(size)
-		except OSError as error:
-			raise ValueError(f"records = '{path}': cannot be read ({error.strerror}); fix: make it readable") from None
-		if not self._data.startswith(_header()):
-			raise ValueError(f"records = '{path}': has other columns than this version writes; fix: start anew in another folder")
-		self.digest = hashlib.sha256(self._data)
-		self.sha256 = self.digest.hexdigest()
-
-	def _lines(self):
-		return self._data.decode(errors="replace").split("\n")[1:-1]
+		super().__init__(path, COLUMNS, size, "records")
 
 	def count(self, stage):
 		"""Rows of a stage."""
-		return sum(line.startswith(stage + ",") for line in self._lines())
-
-	def last(self):
-		"""The last row, by column; None without rows. :raises ValueError: it is no row."""
-		lines = self._lines()
-		if not lines:
-			return None
-
-		def value(column, cell):
-			return cell if column.name in _TEXT else int(cell) if cell.lstrip("-").isdecimal() else float(cell)
-
-		try:
-			return {column.name: value(column, cell) for column, cell in zip(COLUMNS, lines[-1].split(","), strict=True)}
-		except ValueError:
-			raise ValueError(f"records = '{self.path}': line {len(lines) + 1} is no row of this version; fix: restore the file") from None
+		return sum(line.startswith(stage + ",") for line in self.lines())
 
 
-def _header():
-	return (",".join(column.header for column in COLUMNS) + "\n").encode()
-
-
-class Records:
-	"""records.csv being written.
-
-	:param path: the file.
-	:param keep: bytes to keep of an existing file (a checkpoint's :meth:`position`); None starts anew.
-	:raises ValueError: the existing file is shorter than ``keep`` or has other columns.
-	:raises OSError: the file cannot be written, with its name; what is in it are whole rows.
-
-	Attribute: ``size``, bytes written so far.
-	"""
+class Records(tables.Table):
+	"""records.csv being written, see :class:`hexmembrane.output.tables.Table`."""
 
 	def __init__(self, path, keep=None):
-		self.path = pathlib.Path(path)
-		self._digest, self.size = hashlib.sha256(), 0
-		if keep is None:
-			self._file = open(self.path, "wb", buffering=0)
-			self._write(_header())
-			return
-		self._digest, self.size = Kept(path, keep).digest, keep
-		self._file = open(self.path, "r+b", buffering=0)
-		self._file.truncate(keep)
-		self._file.seek(keep)
-
-	def _write(self, line):
-		left = memoryview(line)
-		try:
-			while left:
-				left = left[self._file.write(left) :]
-			if os.fstat(self._file.fileno()).st_nlink == 0:
-				raise FileNotFoundError(errno.ENOENT, "it was removed while the test was running")
-		except OSError as error:
-			with contextlib.suppress(OSError):
-				self._file.truncate(self.size)
-			raise type(error)(error.errno, error.strerror, str(self.path)) from None
-		self._digest.update(line)
-		self.size += len(line)
-
-	def append(self, row):
-		"""Write one row, a mapping with exactly the columns' names; values are written so that they read back exactly.
-
-		:raises ValueError: a column is missing or unknown, or a number is not finite (nan is allowed in the optional columns).
-		"""
-		names = [column.name for column in COLUMNS]
-		if set(row) != set(names):
-			odd = sorted(set(row) ^ set(names))
-			raise ValueError(f"records.row = {odd}: missing or unknown columns; fix: give each of COLUMNS once")
-		cells = []
-		for column in COLUMNS:
-			name, value = column.name, row[column.name]
-			if name in _TEXT:
-				cells.append(value)
-				continue
-			if column.optional and math.isnan(value):
-				cells.append("nan")
-				continue
-			if not math.isfinite(value):
-				raise ValueError(f"records.{name} = {value} in step {row['step']}: is not finite; fix: see the state at the last checkpoint")
-			cells.append(repr(int(value)) if float(value).is_integer() and abs(value) < 2**53 else repr(float(value)))
-		self._write((",".join(cells) + "\n").encode())
-
-	def position(self):
-		"""Bytes written so far; they are on the disk when this returns."""
-		os.fsync(self._file.fileno())
-		return self.size
-
-	@property
-	def sha256(self):
-		"""Of the bytes written so far."""
-		return self._digest.hexdigest()
-
-	def close(self):
-		self._file.close()
-
-	def __enter__(self):
-		return self
-
-	def __exit__(self, *_):
-		self.close()
+		super().__init__(path, COLUMNS, keep, "records")
 
 
 def read(path):
@@ -276,22 +157,9 @@ def read(path):
 
 	:raises ValueError: no records file, or a row with a wrong number of cells.
 	"""
-	lines = pathlib.Path(path).read_text(encoding="utf-8").split("\n")
-	names = [header.split(" [")[0] for header in lines[0].split(",")]
-	if "stage" not in names or "step" not in names:
-		raise ValueError(f"records = '{path}': has no header of records.csv; fix: give the records.csv of a test")
-	rows = [line.split(",") for line in lines[1:-1]]
-	for number, row in enumerate(rows, 2):
-		if len(row) != len(names):
-			raise ValueError(f"records = '{path}', line {number}: has {len(row)} cells for {len(names)} columns; fix: restore the file")
-	table = {}
-	for k, name in enumerate(names):
-		cells = [row[k] for row in rows]
-		table[name] = cells if name in _TEXT else numpy.array([float(cell) for cell in cells])
-	return table
+	return tables.read(path, _TEXT, "records")
 
 
 def markdown():
 	"""The table of columns for the documentation."""
-	lines = ["| column | unit | meaning and sign |", "| --- | --- | --- |"]
-	return "\n".join(lines + [f"| `{column.name}` | {column.unit} | {column.doc} |" for column in COLUMNS])
+	return tables.markdown(COLUMNS)
