@@ -35,7 +35,7 @@ USUAL = {
 	"start radial": (0, 0.01),
 	"boundary": (0, 0.1),
 	"held": (0, 0.03),
-	"energy": (0, 2e-3),
+	"energy": (0, ENERGY),
 	"energy, consolidation": (0, 2e-3),
 	"membrane speed": (0, 0.3),
 	"largest soil stress/sigma3": (0.9, 6),

@@ -268,6 +268,13 @@ class Consolidation:
 	)
 
 
+def restTolerance(tolerance, boundary, pressureTime):
+	"""``consolidation.tolerance``, or without one what the boundary can hold: without a closed loop the membrane's own tension is on the soil too."""
+	if tolerance is not None:
+		return tolerance
+	return 0.05 if boundary == "membrane" and pressureTime == math.inf else 0.005
+
+
 @dataclasses.dataclass
 class Shear:
 	"""Shearing at constant confining pressure."""
