@@ -22,7 +22,7 @@ setUpBrowser() {
 	cat >"$work/chromium" <<-'END'
 		#!/bin/bash
 		here=$(dirname "$(readlink -f "$0")")
-		LD_LIBRARY_PATH=$here/tree/usr/lib/x86_64-linux-gnu exec "$here/tree/usr/lib/chromium/chromium-headless-shell" "$@"
+		LD_LIBRARY_PATH=$here/tree/usr/lib/x86_64-linux-gnu:$here/tree/usr/lib/x86_64-linux-gnu/pulseaudio exec "$here/tree/usr/lib/chromium/chromium-headless-shell" "$@"
 	END
 	finishBeside "$1" Chromium chromium --version
 }

@@ -8,6 +8,7 @@ import base64
 import datetime
 import hashlib
 import html
+import math
 import pathlib
 
 import hexmembrane
@@ -27,9 +28,9 @@ def _scatter(group):
 	return float(halfWidth(peaks)) * len(peaks) / sum(peaks), len(peaks)
 
 
-def _content(run, group, bytesLeft):
+def _content(run, group, every):
 	"""All that the page tells of a test. What reads files comes first: it adds to the run's problems."""
-	scene = spatial.scene(run, bytesLeft)
+	scene = spatial.scene(run, every)
 	profile = profiles.measured(run) or (scene or {}).pop("profile", None)
 	(scene or {}).pop("profile", None)
 	return {
@@ -60,7 +61,7 @@ def gather(folders, laboratories=(), watch=None):
 	found = runs.gather(folders)
 	groups = curves.groups(found)
 	groupOf = {run.name: group for group in groups for run in group}
-	framed = sum((run.folder / "vtk" / "grains.pvd").is_file() for run in found) or 1
+	every = max(1, math.ceil(sum(map(spatial.bytesOf, found)) / spatial.MOST_BYTES))
 	return {
 		"title": found[0].title if len(found) == 1 else f"{len(found)} tests",
 		"date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
@@ -68,8 +69,9 @@ def gather(folders, laboratories=(), watch=None):
 		"watch": watch,
 		"panels": [{"name": panel.name, "title": panel.title, "unit": panel.unit, "log": panel.log} for panel in curves.PANELS],
 		"axes": curves.axes(),
-		"runs": [_content(run, groupOf.get(run.name), spatial.MOST_BYTES // framed) for run in found],
+		"runs": [_content(run, groupOf.get(run.name), every) for run in found],
 		"groups": [curves.ofGroup(group) for group in groups],
+		"differences": runs.differences(found),
 		"laboratories": [curves.laboratory(path) for path in laboratories],
 	}
 

@@ -151,6 +151,25 @@ def _study(folder):
 	return [read(place, name) for name, place in places]
 
 
+def differences(found):
+	"""Keys in which tests differ, their titles left out: {"key", "values"}, texts."""
+	flat = [{} for _ in found]
+
+	def visit(values, path, into):
+		for name, value in values.items():
+			at = f"{path}.{name}" if path else str(name)
+			if isinstance(value, dict):
+				visit(value, at, into)
+			else:
+				into[at] = str(value)
+
+	for run, into in zip(found, flat):
+		visit({name: value for name, value in run.config.items() if name != "title"}, "", into)
+	keys = list(dict.fromkeys(key for one in flat for key in one))
+	rows = [{"key": key, "values": [one.get(key, "not given") for one in flat]} for key in keys]
+	return [row for row in rows if len(set(row["values"])) > 1]
+
+
 def _distinct(found):
 	"""The runs, each with a name of its own."""
 	seen = {}

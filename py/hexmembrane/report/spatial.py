@@ -129,10 +129,26 @@ def _same(run, read, what):
 	return [k for k, _ in kept], [frame for _, frame in kept]
 
 
-def scene(run, bytesLeft=MOST_BYTES):
+def bytesOf(run):
+	"""Bytes of numbers of all frames of a test before compression; 0 without frames."""
+	listed = [one for one in _frames(run) if one[1].is_file()]
+	if not listed:
+		return 0
+	first = [(_points(path), names) for path, names in zip(listed[0][1:], (GRAINS, BOUNDARY)) if path is not None and path.is_file()]
+	return _BYTES * len(listed) * sum(count * (3 + len(names)) for count, names in first)
+
+
+def _points(path):
+	try:
+		return len(vtk.read(path)[0])
+	except (OSError, ValueError, AttributeError):
+		return 0
+
+
+def scene(run, every=1):
 	"""The frames of a test for the page, None without any that can be read.
 
-	:param bytesLeft: bytes before compression that it may have; frames are left out evenly beyond.
+	:param every: of so many frames one is taken, and the last.
 	"""
 	listed = _frames(run)
 	whole = [one for one in listed if one[1].is_file()]
@@ -140,14 +156,10 @@ def scene(run, bytesLeft=MOST_BYTES):
 		run.problems.append(f"{len(listed) - len(whole)} of {len(listed)} frames in vtk/ are missing.")
 	if not whole:
 		return None
-	first = _readFrame(run, whole[0][1])
-	around = _readFrame(run, whole[0][2]) if whole[0][2] else None
-	size = _BYTES * sum(len(one[0]) * (3 + len(names)) for one, names in ((first, GRAINS), (around, BOUNDARY)) if one)
-	step = max(1, math.ceil(len(whole) * size / max(bytesLeft, 1)))
-	if step > 1:
-		chosen = sorted({*range(0, len(whole), step), len(whole) - 1})
+	chosen = sorted({*range(0, len(whole), every), len(whole) - 1})
+	if len(chosen) < len(whole):
 		run.problems.append(f"Of {len(whole)} frames {len(chosen)} are in this page, lest it grow too large.")
-		whole = [whole[k] for k in chosen]
+	whole = [whole[k] for k in chosen]
 	at, grains = _same(run, [_readFrame(run, path) for _, path, _ in whole], "grains")
 	if not grains:
 		return None
