@@ -8,7 +8,7 @@ import pytest
 
 PACKAGE = pathlib.Path(__file__).parents[2] / "py" / "hexmembrane"
 #: A sub-package imports from itself and from those before it. This is the order of py/hexmembrane/README.md.
-ORDER = ("configuration", "scene", "measure", "output", "run")
+ORDER = ("configuration", "scene", "measure", "output", "report", "run")
 WITHOUT_YADE = (
 	"configuration.schema",
 	"configuration.config",
@@ -29,6 +29,18 @@ WITHOUT_YADE = (
 	"output.records",
 	"output.vtk",
 	"output.plots",
+	"report.command",
+	"report.curves",
+	"report.encode",
+	"report.libraries",
+	"report.page",
+	"report.profiles",
+	"report.runs",
+	"report.sections",
+	"report.spatial",
+	"report.summary",
+	"report.terminal",
+	"report.verdict",
 	"run.checkpoints",
 	"run.estimate",
 	"run.pressure_watch",

@@ -9,6 +9,8 @@ import time
 from hexmembrane.report import page, runs, terminal
 from hexmembrane.report.libraries import LibraryError
 
+#: The page's name in a test's folder.
+_NAME = "report.html"
 #: Seconds between two looks at a running test.
 _SECONDS = 10.0
 
@@ -16,7 +18,7 @@ _SECONDS = 10.0
 def _arguments(argv):
 	parser = argparse.ArgumentParser(prog="scripts/report", description="One page of HTML from tests and studies, that opens from the disk without a network.")
 	parser.add_argument("folders", nargs="+", metavar="DIR", help="output folder of scripts/run or scripts/sweep")
-	parser.add_argument("--out", metavar="FILE", help=f"page to write (default: {page.NAME} in the first DIR)")
+	parser.add_argument("--out", metavar="FILE", help=f"page to write (default: {_NAME} in the first DIR)")
 	parser.add_argument("--laboratory", action="append", default=[], metavar="CSV", help="curves to lay under: 'axial_strain [-]' and columns of records.csv")
 	parser.add_argument("--text", action="store_true", help="print curves on the terminal and write no page")
 	parser.add_argument("--watch", type=float, nargs="?", const=_SECONDS, metavar="SECONDS", help="renew page and terminal until the tests are at their end")
@@ -52,7 +54,7 @@ def _once(given, out, watch):
 def main(argv):
 	"""The command; returns its exit code: 0, 1 for what is not there or cannot be written, 130 when interrupted."""
 	given = _arguments(argv)
-	out = pathlib.Path(given.out or pathlib.Path(given.folders[0]) / page.NAME)
+	out = pathlib.Path(given.out or pathlib.Path(given.folders[0]) / _NAME)
 	try:
 		before, ended = None, False
 		while not ended:

@@ -16,7 +16,6 @@ from hexmembrane.report import curves, libraries, profiles, runs, sections, spat
 from hexmembrane.report.encode import script
 from hexmembrane.report.summary import halfWidth, quantities
 
-NAME = "report.html"
 _SOURCES = pathlib.Path(__file__).with_name("page")
 #: The page's own scripts, in the order in which they are run.
 _SCRIPTS = ("data", "colours", "figure", "curves", "points", "scene", "sections", "text", "main")

@@ -1,6 +1,6 @@
 // Curves of all tests over each other: one panel a quantity, one zoom and one cursor for all.
 {
-	const WIDTH = 440, HEIGHT = 250, LEFT = 50, RIGHT = 22, TOP = 10, BOTTOM = 34, COLOURS = 8, MANY = 6, MOST_TAGS = 8;
+	const WIDTH = 440, HEIGHT = 250, LEFT = 50, RIGHT = 22, TOP = 10, BOTTOM = 34, COLOURS = 8, MANY = 6, MOST_TAGS = 8, TAG = 11, DECADES = 4;
 	const DASHES = ["none", "7 3", "2 2.5", "9 3 2 3"];
 	const { content } = report;
 	const state = { stage: "shear", domain: null, cursor: null, marker: null };
@@ -42,9 +42,20 @@
 		}
 		const [low, high] = d3.extent(panel.log ? values.filter((y) => y > 0) : values);
 		if (low === undefined) return panel.log ? [1e-6, 1] : [0, 1];
-		if (panel.log) return [low / 1.3, high * 1.3];
+		if (panel.log) return [Math.max(low, high * 10 ** -DECADES) / 1.3, high * 1.3];
 		const edge = (high - low) * 0.06 || Math.abs(high) * 0.02 || 1;
 		return [low - edge, high + edge];
+	}
+
+	// Moves tags apart where curves end beside each other.
+	function apart(places) {
+		const beside = (a, b) => Math.abs(a.x - b.x) < TAG;
+		places.sort((a, b) => a.y - b.y).forEach((place, k) => {
+			for (const other of places.slice(0, k)) if (beside(place, other)) place.y = Math.max(place.y, other.y + TAG);
+		});
+		[...places].reverse().forEach((place, k, all) => {
+			place.y = Math.min(place.y, HEIGHT - BOTTOM, ...all.slice(0, k).filter((other) => beside(place, other)).map((other) => other.y - TAG));
+		});
 	}
 
 	function domain() {
@@ -110,10 +121,9 @@
 			x.domain(state.domain ?? domain());
 			y = (panel.log ? d3.scaleLog() : d3.scaleLinear()).domain(extent(shown, panel, x.domain())).range([HEIGHT - BOTTOM, TOP]);
 			xAxis.call(d3.axisBottom(x).ticks(6));
-			const decades = panel.log ? Math.log10(y.domain()[1] / y.domain()[0]) : 0;
-			yAxis.call(panel.log ? d3.axisLeft(y).ticks(decades > 4 ? 4 : 3, ".0e") : d3.axisLeft(y).ticks(5));
+			yAxis.call(panel.log ? d3.axisLeft(y).ticks(4, ".0e") : d3.axisLeft(y).ticks(5));
 			label.text(`${axis().label} [${axis().unit}]`);
-			const ticks = panel.log ? y.ticks(3) : y.ticks(5);
+			const ticks = panel.log ? y.ticks(4).filter((one) => Math.abs(Math.log10(one) % 1) < 1e-9) : y.ticks(5);
 			grid.selectAll("line").data(ticks).join("line").attr("class", "grid").attr("x1", LEFT).attr("x2", WIDTH - RIGHT).attr("y1", y).attr("y2", y);
 			lines.selectAll("*").remove();
 			tags.selectAll("*").remove();
@@ -129,8 +139,7 @@
 				const last = points.filter((p) => p[0] <= x.domain()[1] && p[1] !== null && (!panel.log || p[1] > 0)).pop();
 				if (last && series.length > 1 && shown.length <= MOST_TAGS) places.push({ one, x: x(last[0]) + 4, y: y(last[1]) + 4 });
 			}
-			// tags are moved apart where curves end beside each other
-			places.sort((a, b) => a.y - b.y).forEach((place, k) => { if (k && place.y < places[k - 1].y + 11) place.y = places[k - 1].y + 11; });
+			apart(places);
 			for (const place of places) tags.append("text").attr("x", place.x).attr("y", place.y).style("fill", place.one.colour).attr("font-weight", 700).text(place.one.tag);
 			const said = shown.slice(0, 3).map((one) => `${one.name}: ${d3.extent(one.stages[state.stage][panel.name]).map((v) => report.number(v)).join(" to ")}`);
 			svg.attr("aria-label", `${titled} over ${axis().label}. ${said.join("; ")}. Arrow keys move the cursor, + and - zoom, 0 shows all.`);

@@ -27,8 +27,8 @@
 			const listed = (quantities) => quantities.map((one) => [one.name, one.label]);
 			const slider = (label, name, min, max) => element("label", {}, label, element("input", { type: "range", min, max, value: options[name], oninput: (event) => change(name, Number(event.target.value)) }));
 			const box = (label, name) => element("label", {}, element("input", { type: "checkbox", checked: options[name], onchange: (event) => change(name, event.target.checked) }), label);
-			const made = element("div", { class: "tools" }, select("grains by ", "grains", [...listed(data.grains.quantities), ["none", "not shown"]]));
-			if (data.boundary) made.append(select("boundary ", "sheet", [["back", "its back half"], ["whole", "whole"], ["glass", "see-through"], ["none", "not shown"]]), select("by ", "boundary", listed(data.boundary.quantities)));
+			const made = element("div", { class: "tools" }, select("grains coloured by ", "grains", [...listed(data.grains.quantities), ["none", "not shown"]]));
+			if (data.boundary) made.append(select("boundary ", "sheet", [["back", "its back half"], ["whole", "whole"], ["glass", "see-through"], ["none", "not shown"]]), select("coloured by ", "boundary", listed(data.boundary.quantities)));
 			made.append(box("cut", "cut"), slider("at ", "depth", -100, 100), slider("turned ", "azimuth", 0, 360));
 			if (data.planes.length) made.append(box("planes of bands", "bands"));
 			for (const [name, direction] of [["front", [0, -1, 0.15]], ["side", [1, 0, 0.15]], ["top", [0, -0.01, 1]]]) made.append(element("button", { type: "button", onclick: () => this.look(direction) }, name));

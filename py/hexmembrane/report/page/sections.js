@@ -2,6 +2,16 @@
 {
 	const { element } = report;
 
+	const LETTERS = 21;
+
+	// A text in lines of so many letters at most, broken at spaces.
+	const inLines = (text, most) => text.split(" ").reduce((lines, word) => {
+		const last = lines[lines.length - 1];
+		if (last && last.length + word.length < most) lines[lines.length - 1] = `${last} ${word}`;
+		else lines.push(word);
+		return lines;
+	}, []);
+
 	class Clouds {
 		constructor(parent, run) {
 			Object.assign(this, { run, data: run.clouds, state: 0 });
@@ -15,7 +25,7 @@
 
 		async show(strain) {
 			this.state = report.nearest(this.data.strains, strain);
-			const { data, state, svg } = this, grid = data.grids[state], wide = 118, edge = 34, gap = 22, top = 42;
+			const { data, state, svg } = this, grid = data.grids[state], wide = 124, edge = 36, gap = 26, top = 46;
 			const values = await Promise.all(data.quantities.map((one) => report.array(one.states[state])));
 			this.values = values.map((one) => one[0]);
 			const [a, z] = [grid.along, grid.height], da = a[1] - a[0], dz = z[1] - z[0];
@@ -26,9 +36,7 @@
 			svg.attr("aria-label", `${this.caption.textContent}: ${data.quantities.map((one) => `${one.label} ${report.number(one.range[0], 3)} to ${report.number(one.range[1], 3)}`).join(", ")}`);
 			data.quantities.forEach((one, k) => {
 				const x = edge + k * (wide + gap), group = svg.append("g").attr("transform", `translate(${x},${top})`);
-				const [name, unit] = one.label.split(/ (?=\[)/);
-				group.append("text").attr("x", wide / 2).attr("y", -20).attr("text-anchor", "middle").text(name);
-				group.append("text").attr("x", wide / 2).attr("y", -7).attr("text-anchor", "middle").text(unit ?? "");
+				inLines(one.label, LETTERS).reverse().forEach((text, line) => group.append("text").attr("x", wide / 2).attr("y", -7 - 13 * line).attr("text-anchor", "middle").text(text));
 				group.append("image").attr("width", wide).attr("height", high).attr("preserveAspectRatio", "none").attr("href", picture(this.values[k], a.length, z.length, report.scale(one.colours, one.range)));
 				group.append("rect").attr("class", "frame").attr("width", wide).attr("height", high);
 				const across = d3.scaleLinear().domain([a[0] - da / 2, a[a.length - 1] + da / 2]).range([0, wide]), up = d3.scaleLinear().domain([z[0] - dz / 2, z[z.length - 1] + dz / 2]).range([high, 0]);
@@ -81,20 +89,22 @@
 			svg.attr("viewBox", `0 0 ${edge + panels.length * (wide + gap)} ${high + 52}`);
 			this.caption.textContent = `Along the height at ${report.number(100 * data.strains[state], 3)} % (solid) and at the start (dotted); ${data.from}`;
 			svg.attr("aria-label", this.caption.textContent);
-			const up = d3.scaleLinear().domain([0, d3.max(data.height.flat())]).nice().range([high, 10]);
+			const up = d3.scaleLinear().domain([0, d3.max(data.height.flat())]).nice().range([high, 16]);
 			panels.forEach((panel, k) => {
 				const group = svg.append("g").attr("transform", `translate(${edge + k * (wide + gap)},0)`);
 				const [low, most] = d3.extent(panel.lines.flatMap(([name]) => data[name].flat()).filter((one) => one !== null));
 				const edgeOf = (most - low) * 0.05 || 1, across = d3.scaleLinear().domain([low - edgeOf, most + edgeOf]).range([0, wide]);
 				const line = (name, at) => d3.line().defined((p) => p[0] !== null && p[1] !== null).x((p) => across(p[0])).y((p) => up(p[1]))(d3.zip(data[name][at], data.height[at]));
-				group.selectAll("line").data(across.ticks(4)).join("line").attr("class", "grid").attr("x1", across).attr("x2", across).attr("y1", 10).attr("y2", high);
+				group.selectAll("line").data(across.ticks(4)).join("line").attr("class", "grid").attr("x1", across).attr("x2", across).attr("y1", 16).attr("y2", high);
 				group.append("g").attr("class", "axis").attr("transform", `translate(0,${high})`).call(d3.axisBottom(across).ticks(4));
 				group.append("g").attr("class", "axis").call(d3.axisLeft(up).ticks(6));
 				panel.lines.forEach(([name, text, dash], i) => {
 					group.append("path").attr("class", "curve").attr("d", line(name, 0)).style("stroke", `var(--line${i})`).attr("stroke-width", 1.2).attr("stroke-dasharray", "1.5 3");
 					group.append("path").attr("class", "curve").attr("d", line(name, state)).style("stroke", `var(--line${i})`).attr("stroke-width", 2).attr("stroke-dasharray", dash);
-					const top = data[name][state].length - 1;
-					if (text) group.append("text").attr("x", across(data[name][state][top >> 1] ?? low)).attr("y", 22 + 14 * i).attr("text-anchor", "middle").style("fill", `var(--line${i})`).attr("font-weight", 700).text(text);
+					if (!text) return;
+					const key = group.append("g").attr("transform", `translate(${wide - 64 + 70 * (i - 1)},4)`).style("fill", `var(--line${i})`);
+					key.append("line").attr("x2", 26).style("stroke", `var(--line${i})`).attr("stroke-width", 2).attr("stroke-dasharray", dash);
+					key.append("text").attr("x", 30).attr("y", 4).style("fill", `var(--line${i})`).attr("font-weight", 700).text(text);
 				});
 				group.append("text").attr("x", wide / 2).attr("y", high + 36).attr("text-anchor", "middle").text(panel.label);
 			});
