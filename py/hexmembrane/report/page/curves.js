@@ -158,7 +158,7 @@
 				const data = one.stages[state.stage];
 				return (series.length > 1 ? `${one.tag}: ` : "") + (state.cursor > data.x[data.x.length - 1] ? "–" : report.number(valueAt(data, panel.name, state.cursor)));
 			});
-			readout.textContent = `at ${report.number(state.cursor, 3)} ${axis().unit}   ${values.join("   ")} ${panel.unit}`;
+			readout.textContent = `at ${report.number(state.cursor, 3)} ${axis().unit}:   ${values.join("   ")} ${panel.unit}`;
 		}
 		return { draw, drawCursor };
 	}

@@ -79,7 +79,7 @@
 			}
 			this.planes = new THREE.Group();
 			this.scene.add(this.planes);
-			const box = new THREE.Box3().setFromArray(this.positions[0].map((one) => MM * one));
+			const box = new THREE.Box3().setFromArray((this.sheetPositions ?? this.positions)[0].map((one) => MM * one));
 			this.centre = box.getCenter(new THREE.Vector3());
 			this.size = box.getSize(new THREE.Vector3());
 			this.look([0.45, -1, 0.28]);
@@ -231,16 +231,17 @@
 		}
 
 		// Pictures a second while it is turned, over a number of them.
-		measure(pictures) {
+		async measure(pictures) {
+			await this.ready;
 			return new Promise((resolve) => {
 				let left = pictures;
-				const start = performance.now();
+				const start = performance.now(), gl = this.renderer.getContext(), pixel = new Uint8Array(4);
 				const next = () => {
 					if (left-- === 0) { resolve((1000 * pictures) / (performance.now() - start)); return; }
 					this.camera.position.sub(this.centre).applyAxisAngle(new THREE.Vector3(0, 0, 1), TURN).add(this.centre);
 					this.controls.update();
 					this.render();
-					this.renderer.getContext().finish();
+					gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); // waits until it is drawn
 					requestAnimationFrame(next);
 				};
 				next();
