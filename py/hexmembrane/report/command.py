@@ -40,15 +40,16 @@ def _seen(folders):
 	return found
 
 
-def _once(given, out, watch):
-	"""Write or print; whether all tests are at their end."""
+def _once(given, out):
+	"""Write and print once; whether all tests are at their end, and the page no longer renews itself."""
 	found = runs.gather(given.folders)
+	ended = all(run.ended for run in found)
 	if given.text or given.watch is not None:
 		for run in found:
 			print("\n".join(terminal.lines(run)), flush=True)
 	if not given.text:
-		page.write(out, page.gather(given.folders, given.laboratory, watch))
-	return all(run.ended for run in found)
+		page.write(out, page.gather(given.folders, given.laboratory, None if ended else given.watch))
+	return ended
 
 
 def main(argv):
@@ -60,14 +61,12 @@ def main(argv):
 		while not ended:
 			seen = _seen([run.folder for run in runs.gather(given.folders)])
 			if seen != before:
-				ended = _once(given, out, given.watch)
+				ended = _once(given, out)
 				before = seen
 			if given.watch is None:
 				break
 			if not ended:
 				time.sleep(given.watch)
-		if given.watch is not None:
-			_once(given, out, None)
 		if not given.text:
 			print(out)
 	except (runs.ReportError, LibraryError) as error:

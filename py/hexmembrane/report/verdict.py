@@ -55,7 +55,9 @@ def checks(run, scatter=None):
 	:param scatter: relative half width of the mean peak of q over packings and their number, None: one packing.
 	"""
 	shear, consolidation = run.rows("shear"), run.rows("consolidation")
-	found = [Check("at its end", run.state(), "shear.strain", PASS if run.ended else FAIL, "last row of records.csv")]
+	wanted = run.key("shear", "strain")
+	limit = f"{100 * wanted:.4g} %" if isinstance(wanted, (int, float)) else "unknown"
+	found = [Check("at its end", run.state(), limit, PASS if run.ended else FAIL, "last row of records.csv, shear.strain")]
 	if consolidation:
 		limit = run.key("consolidation", "unbalanced", Consolidation.__dataclass_fields__["unbalanced"].default)
 		found.append(_within("at rest before shear", float(consolidation["unbalanced"][-1]), limit, "unbalanced force ratio, consolidation.unbalanced", _number))

@@ -27,8 +27,9 @@
 		const gradient = group.append("defs").append("linearGradient").attr("id", id);
 		for (let k = 0; k <= 16; ++k) gradient.append("stop").attr("offset", k / 16).attr("stop-color", d3.rgb(MAPS[name](k / 16)).toString());
 		group.append("rect").attr("width", width).attr("height", 9).attr("fill", `url(#${id})`).attr("class", "bar");
-		group.append("text").attr("y", 21).text(report.number(low, 3));
-		group.append("text").attr("x", width).attr("y", 21).attr("text-anchor", "end").text(report.number(high, 3));
+		const end = (value) => report.number(Math.abs(value) < 1e-4 * (high - low) ? 0 : value, 3);
+		group.append("text").attr("y", 21).text(end(low));
+		group.append("text").attr("x", width).attr("y", 21).attr("text-anchor", "end").text(end(high));
 		if (label) group.append("text").attr("y", -5).text(label);
 		return group;
 	};

@@ -79,7 +79,8 @@
 			}
 			this.planes = new THREE.Group();
 			this.scene.add(this.planes);
-			const box = new THREE.Box3().setFromArray((this.sheetPositions ?? this.positions)[0].map((one) => MM * one));
+			const box = new THREE.Box3();
+			for (const places of [this.positions, this.sheetPositions ?? []]) if (places[0]) box.union(new THREE.Box3().setFromArray(places[0].map((one) => MM * one)));
 			this.centre = box.getCenter(new THREE.Vector3());
 			this.size = box.getSize(new THREE.Vector3());
 			this.look([0.45, -1, 0.28]);

@@ -2,7 +2,7 @@
 {
 	const { element } = report;
 
-	const LETTERS = 21;
+	const LETTERS = 21, LARGER = 1.25;
 
 	// A text in lines of so many letters at most, broken at spaces.
 	const inLines = (text, most) => text.split(" ").reduce((lines, word) => {
@@ -86,7 +86,7 @@
 			if (data.axial) panels.push({ label: "stress of the soil [kPa]", lines: [["axial", "axial", "none"], ["radial", "radial", "6 3"]] });
 			const wide = 190, high = 230, edge = 48, gap = 34;
 			svg.selectAll("*").remove();
-			svg.attr("viewBox", `0 0 ${edge + panels.length * (wide + gap)} ${high + 52}`);
+			svg.attr("viewBox", `0 0 ${edge + panels.length * (wide + gap)} ${high + 52}`).style("max-width", `${LARGER * (edge + panels.length * (wide + gap))}px`);
 			this.caption.textContent = `Along the height at ${report.number(100 * data.strains[state], 3)} % (solid) and at the start (dotted); ${data.from}`;
 			svg.attr("aria-label", this.caption.textContent);
 			const up = d3.scaleLinear().domain([0, d3.max(data.height.flat())]).nice().range([high, 16]);
