@@ -27,7 +27,7 @@ class Browser:
 	:param program: to start. :param limit: seconds that it has for an answer.
 	"""
 
-	def __init__(self, program, limit=60.0):
+	def __init__(self, program, limit=120.0):
 		self._limit, self._number, self._rest, self.events = limit, 0, b"", []
 		(commands, self._out), (self._in, answers) = os.pipe(), os.pipe()
 		theirs = [fcntl.fcntl(end, fcntl.F_DUPFD, _HIGH) for end in (commands, answers)]

@@ -15,11 +15,20 @@ _CONTRASTS = """(() => {
 	const channel = (one) => { one /= 255; return one <= 0.03928 ? one / 12.92 : ((one + 0.055) / 1.055) ** 2.4; };
 	const light = (colour) => { const c = d3.rgb(colour); return 0.2126 * channel(c.r) + 0.7152 * channel(c.g) + 0.0722 * channel(c.b); };
 	const contrast = (a, b) => { const [low, high] = [light(a), light(b)].sort((p, q) => p - q); return (high + 0.05) / (low + 0.05); };
-	const style = getComputedStyle(document.documentElement), value = (name) => style.getPropertyValue(`--${name}`).trim(), least = (names) => Math.min(...names.map((name) => contrast(value(name), value("card"))));
+	const style = getComputedStyle(document.documentElement), value = (name) => style.getPropertyValue(`--${name}`).trim();
+	const least = (names) => Math.min(...names.map((name) => contrast(value(name), value("card"))));
 	return [least(["ink", "soft", "accent", "good", "bad", "open"]), least([0, 1, 2, 3, 4, 5, 6, 7].map((k) => `line${k}`))];
 })()"""
 _WIDER = "[...document.querySelectorAll('main, section, nav, header')].filter((one) => one.scrollWidth > innerWidth + 1).map((one) => one.id || one.tagName)"
-_UNNAMED = "[...document.querySelectorAll('button, input, select, [role=img], a')].filter((one) => !(one.textContent.trim() || one.getAttribute('aria-label') || one.labels?.[0]?.textContent.trim())).map((one) => one.outerHTML.slice(0, 80))"
+_UNNAMED = """[...document.querySelectorAll("button, input, select, [role=img], a")]
+	.filter((one) => !(one.textContent.trim() || one.getAttribute("aria-label") || one.labels?.[0]?.textContent.trim()))
+	.map((one) => one.outerHTML.slice(0, 80))"""
+#: Grains of a scene, and pictures a second while it is turned: as fine as the screen, and at half of that.
+_SPEED = """(async () => {
+	const scene = report.state.parts[0], fine = await scene.measure(30);
+	scene.setRatio(0.5);
+	return [scene.radii.length, fine, await scene.measure(30)];
+})()"""
 
 
 def _moves(page, wrong):
@@ -47,7 +56,8 @@ def _figures(page, wrong):
 		report.save = (name, type, text) => kept.push([name, type, text]);
 		for (const button of document.querySelectorAll("figure:not([hidden]) figcaption button")) button.click();
 		report.save = before;
-		return kept.map(([name, type, text]) => [name, text.length, type === "text/csv" ? text.split("\\n").length : new DOMParser().parseFromString(text, type).documentElement.nodeName]);
+		const told = (type, text) => type === "text/csv" ? text.split("\\n").length : new DOMParser().parseFromString(text, type).documentElement.nodeName;
+		return kept.map(([name, type, text]) => [name, text.length, told(type, text)]);
 	})()""")
 	for name, size, told in saved:
 		if size < 100 or told == "parsererror" or (name.endswith(".csv") and told < 3):
@@ -74,8 +84,8 @@ def look(browser, path, out):
 			_moves(page, wrong)
 			print(f"{name}: {_figures(page, wrong)} files of figures")
 			if page.run("report.state.parts[0]?.measure !== undefined"):
-				shown = page.run("report.state.parts[0].radii.length")
-				print(f"{name}: {shown} grains at {page.run('report.state.parts[0].measure(30)'):.1f} pictures a second in full, {page.run('(async () => { const one = report.state.parts[0]; one.setRatio(0.5); return one.measure(30); })()'):.1f} at half of the resolution")
+				shown, fine, coarse = page.run(_SPEED)
+				print(f"{name}: {shown} grains at {fine:.1f} pictures a second in full, {coarse:.1f} at half of the resolution")
 			if page.run("window.harmed !== undefined"):
 				wrong.append("a text of a test was run")
 			page.pdf(out / f"{name}.pdf")

@@ -10,7 +10,11 @@
 	const GREY = [150, 150, 150];
 	const STEPS = 256;
 
-	const table = (name) => Array.from({ length: STEPS }, (_, k) => { const c = d3.rgb(MAPS[name](k / (STEPS - 1))); return [c.r, c.g, c.b]; });
+	const table = (name) =>
+		Array.from({ length: STEPS }, (_, k) => {
+			const c = d3.rgb(MAPS[name](k / (STEPS - 1)));
+			return [c.r, c.g, c.b];
+		});
 	const tables = {};
 
 	// value -> [r, g, b] of 0 to 255; what is no number is grey.
@@ -23,9 +27,14 @@
 	let bars = 0;
 	// A horizontal bar with its ends and its label, into an SVG selection at (x, y).
 	report.bar = (parent, x, y, width, name, [low, high], label) => {
-		const id = `bar${++bars}`, group = parent.append("g").attr("transform", `translate(${x},${y})`);
+		const id = `bar${++bars}`,
+			group = parent.append("g").attr("transform", `translate(${x},${y})`);
 		const gradient = group.append("defs").append("linearGradient").attr("id", id);
-		for (let k = 0; k <= 16; ++k) gradient.append("stop").attr("offset", k / 16).attr("stop-color", d3.rgb(MAPS[name](k / 16)).toString());
+		for (let k = 0; k <= 16; ++k)
+			gradient
+				.append("stop")
+				.attr("offset", k / 16)
+				.attr("stop-color", d3.rgb(MAPS[name](k / 16)).toString());
 		group.append("rect").attr("width", width).attr("height", 9).attr("fill", `url(#${id})`).attr("class", "bar");
 		const end = (value) => report.number(Math.abs(value) < 1e-4 * (high - low) ? 0 : value, 3);
 		group.append("text").attr("y", 21).text(end(low));

@@ -14,8 +14,11 @@ const report = { content: JSON.parse(document.getElementById("data").textContent
 		const raw = await bytes(encoded.data);
 		if (encoded.low === undefined) return new Uint32Array(raw.buffer);
 		const [frames, ...rest] = encoded.shape;
-		const size = rest.reduce((a, b) => a * b, 1), count = frames * size, scale = (encoded.high - encoded.low) / (NAN - 1);
-		const codes = new Uint16Array(size), found = [];
+		const size = rest.reduce((a, b) => a * b, 1),
+			count = frames * size,
+			scale = (encoded.high - encoded.low) / (NAN - 1);
+		const codes = new Uint16Array(size),
+			found = [];
 		for (let frame = 0; frame < frames; ++frame) {
 			const values = new Float32Array(size);
 			for (let k = 0, at = frame * size; k < size; ++k, ++at) {
@@ -31,7 +34,8 @@ const report = { content: JSON.parse(document.getElementById("data").textContent
 	report.array = (encoded) => (encoded.decoded ??= decode(encoded));
 
 	// Index of the value that is nearest; of equally near ones the first.
-	report.nearest = (values, wanted) => values.reduce((best, value, k) => (Math.abs(value - wanted) < Math.abs(values[best] - wanted) ? k : best), 0);
+	report.nearest = (values, wanted) =>
+		values.reduce((best, value, k) => (Math.abs(value - wanted) < Math.abs(values[best] - wanted) ? k : best), 0);
 
 	report.number = (value, digits = 4) => {
 		if (value === null || !Number.isFinite(value)) return "–";

@@ -19,10 +19,19 @@
 	function theme() {
 		const dark = matchMedia("(prefers-color-scheme: dark)");
 		setTheme(kept.get("theme") ?? (dark.matches ? "dark" : "light"));
-		dark.addEventListener("change", () => { if (!kept.has("theme")) setTheme(dark.matches ? "dark" : "light"); });
-		find("theme").addEventListener("click", () => { const next = document.documentElement.dataset.theme === "dark" ? "light" : "dark"; keep("theme", next); setTheme(next); });
+		dark.addEventListener("change", () => {
+			if (!kept.has("theme")) setTheme(dark.matches ? "dark" : "light");
+		});
+		find("theme").addEventListener("click", () => {
+			const next = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+			keep("theme", next);
+			setTheme(next);
+		});
 		let before = null;
-		addEventListener("beforeprint", () => { before = document.documentElement.dataset.theme; setTheme("light"); });
+		addEventListener("beforeprint", () => {
+			before = document.documentElement.dataset.theme;
+			setTheme("light");
+		});
 		addEventListener("afterprint", () => setTheme(before));
 	}
 
@@ -41,7 +50,9 @@
 		report.verdict(verdict, run);
 		report.origin(origin, run);
 		state.parts.forEach((part) => part.dispose?.());
-		const both = run.scene && (run.clouds || run.profile), left = element("div"), right = element("div");
+		const both = run.scene && (run.clouds || run.profile),
+			left = element("div"),
+			right = element("div");
 		state.parts = [
 			...(run.scene ? [new report.Scene(left, run)] : []),
 			...(run.clouds ? [new report.Clouds(right, run)] : []),
@@ -72,19 +83,29 @@
 		});
 	}
 
-	find("about").textContent = `${content.runs.length > 1 ? `${content.runs.length} tests` : content.runs[0].state}; made ${content.date} by hexmembrane ${content.version}${content.watch ? `; renews itself every ${content.watch} s` : ""}`;
+	find("about").textContent =
+		`${content.runs.length > 1 ? `${content.runs.length} tests` : content.runs[0].state}; made ${content.date} by hexmembrane ${content.version}${content.watch ? `; renews itself every ${content.watch} s` : ""}`;
 	theme();
 	report.problems();
 	report.overview(find("verdict"));
 	report.curves.show(find("curves"));
-	const [verdict, inside, origin] = ["verdict", "inside", "origin"].map((id) => { const made = element("div"); find(id).append(made); return made; });
+	const [verdict, inside, origin] = ["verdict", "inside", "origin"].map((id) => {
+		const made = element("div");
+		find(id).append(made);
+		return made;
+	});
 	report.differences(find("origin"));
 	find("pick").hidden = content.runs.length < 2;
-	find("run").append(...content.runs.map((run, k) => element("option", { value: k }, run.title === run.name ? run.name : `${run.name}: ${run.title}`)));
+	find("run").append(
+		...content.runs.map((run, k) => element("option", { value: k }, run.title === run.name ? run.name : `${run.name}: ${run.title}`)),
+	);
 	find("run").addEventListener("change", (event) => pick(content.runs[event.target.value]));
 	find("strain").addEventListener("input", (event) => show(Number(event.target.value)));
 	play();
-	const first = Math.max(0, content.runs.findIndex((run) => run.name === kept.get("run")));
+	const first = Math.max(
+		0,
+		content.runs.findIndex((run) => run.name === kept.get("run")),
+	);
 	find("run").value = first;
 	report.state = state;
 	report.ready = pick(content.runs[first]);
