@@ -53,16 +53,16 @@
 				"tr",
 				{},
 				element("th", { scope: "row" }, one.name),
+				state(one),
 				element("td", {}, one.number),
 				element("td", {}, one.limit),
-				state(one),
 				element("td", { class: "why" }, one.why),
 			),
 		);
 		place.replaceChildren(
 			...(content.runs.length > 1 ? [element("h3", {}, run.name)] : []),
 			...(run.summary.length ? [facts] : []),
-			table(["check", "number", "limit", "", "what it is"], rows),
+			table(["check", "verdict", "number", "limit", "what it is"], rows),
 		);
 	};
 
