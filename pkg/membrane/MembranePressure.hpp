@@ -3,6 +3,7 @@
 
 #include "HexMembrane.hpp"
 #include "PressureLoop.hpp"
+#include "PressureRamp.hpp"
 
 #include "compact/Stepped.hpp"
 
@@ -30,8 +31,10 @@ public:
 	const HexMembrane* actsOn() const override { return membrane.get(); }
 	void requireCompactScene() const override;
 
-	//! factor pressure (Pa): what is on the triangles.
-	Real applied() const { return factor * pressure; }
+	//! Pressure that the ramps have come to (Pa).
+	Real ramped() const { return rampedPressure(pressure, rampTime, rampTarget, ramps); }
+	//! factor times that (Pa): what is on the triangles.
+	Real applied() const { return factor * ramped(); }
 	Real work_get() const { return meter->work; }
 
 private:
@@ -71,6 +74,7 @@ private:
 		((vector<Body::id_t>,ids,,,"Bodies that are the vertices of a mesh of your own."))
 		((vector<Vector3i>,triangles,,,"Triangles of that mesh as indices into ids, counter-clockwise seen from the side of the pressure."))
 		((Real,pressure,NaN,,"Pressure [Pa], positive inwards; may be changed at any time. Required."))
+		((Real,rampTime,0,,"Duration of every change of the pressure [s], >= 0, the first one from zero included; 0: at once. A change takes the course $\\frac12(1-\\cos\\pi t/T)$; changes that overlap add up."))
 		((string,surface,HEXMEMBRANE_PRESSURE_SURFACE_DEFAULT,,"'inner' or 'centre', see above."))
 		((Real,surfaceOffset,NaN,,"Distance [m] of the inner surface from the centres; NaN: the membrane's sphere radius. Required for 'inner' on a mesh of your own."))
 		((Real,timeConstant,std::numeric_limits<Real>::infinity(),,"Time constant $T$ of the closed loop [s], two time steps at least; inf: open loop."))
@@ -78,11 +82,13 @@ private:
 		((Real,factor,1,Attr::readonly,"Present factor on the pressure [-]."))
 		((bool,saturated,false,Attr::readonly,"The closed loop stands at one of its limits: the target cannot be reached."))
 		((Real,transmitted,NaN,Attr::readonly,"Mean transmitted pressure of group 3 at the last correction [Pa] (closed loop only)."))
+		((Real,rampTarget,0,(Attr::readonly|Attr::hidden),"Pressure asked for at the last step [Pa]."))
+		((vector<Vector3r>,ramps,,(Attr::readonly|Attr::hidden),"Changes that are under way: size [Pa], age [s], duration [s]."))
 		((Real,lastCorrection,NaN,(Attr::readonly|Attr::hidden),"Time of the last correction [s]."))
 		((shared_ptr<WorkMeter>,meter,new WorkMeter,(Attr::readonly|Attr::hidden),"Work of the pressure."))
 		,/*ctor*/,
 		.add_property("work",&MembranePressure::work_get,"Work done by the pressure so far [J], trapezoidal in force and displacement; positive when the surface moves with the pressure.")
-		.add_property("applied",&MembranePressure::applied,"Pressure on the triangles [Pa]: factor times pressure.")
+		.add_property("applied",&MembranePressure::applied,"Pressure on the triangles [Pa]: factor times pressure, as far as its ramp has come.")
 		.add_property("area",&MembranePressure::area,"Loaded area at the last step [m²]: a third of every triangle round each loaded particle.")
 		.add_property("resultant",&MembranePressure::resultant,"Sum of the applied forces at the last step [N].")
 		.def("axialPush",&MembranePressure::axialPush,(boost::python::arg("z")),"Axial parts of the applied forces towards the plane at the height z [m], mean of both sides [N], at the last step: half the difference of the sums below and above.")

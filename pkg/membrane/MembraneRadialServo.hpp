@@ -3,6 +3,7 @@
 
 #include "HexMembrane.hpp"
 #include "PressureLoop.hpp"
+#include "PressureRamp.hpp"
 
 #include "compact/Stepped.hpp"
 #include "kernels/membrane/PaddedRings.hpp"
@@ -23,6 +24,8 @@ public:
 	void bookWorks() override;
 	const HexMembrane* actsOn() const override { return membrane.get(); }
 
+	//! Pressure that the ramps have come to (Pa).
+	Real ramped() const { return rampedPressure(pressure, rampTime, rampTarget, ramps); }
 	Real work_get() const { return meter->work; }
 
 private:
@@ -43,6 +46,7 @@ private:
 		"Example::\n\n\tMembraneRadialServo(membrane=m,pressure=100e3)",
 		((shared_ptr<HexMembrane>,membrane,,,"The membrane. Required."))
 		((Real,pressure,NaN,,"Pressure $\\sigma_3$ [Pa], positive inwards; may be changed at any time. Required."))
+		((Real,rampTime,0,,"Duration of every change of the pressure [s], as :yref:`MembranePressure.rampTime`; give both the same."))
 		((string,areaRule,HEXMEMBRANE_AREA_RULE_DEFAULT,,"'tributary' or 'cube', see above."))
 		((Real,timeConstant,std::numeric_limits<Real>::infinity(),,"Time constant $T$ of the closed loop [s], two time steps at least; inf: open loop."))
 		((Real,maxFactor,2,,"Largest factor $f$ that the closed loop may reach [-]."))
@@ -50,6 +54,8 @@ private:
 		((bool,saturated,false,Attr::readonly,"The closed loop stands at one of its limits: the target cannot be reached."))
 		((Real,transmitted,NaN,Attr::readonly,"Mean transmitted pressure of group 2 at the last correction [Pa] (closed loop only)."))
 		((Real,area,NaN,Attr::readonly,"Sum of the particles' areas at the last step [m²]."))
+		((Real,rampTarget,0,(Attr::readonly|Attr::hidden),"Pressure asked for at the last step [Pa]."))
+		((vector<Vector3r>,ramps,,(Attr::readonly|Attr::hidden),"Changes that are under way: size [Pa], age [s], duration [s]."))
 		((Real,lastCorrection,NaN,(Attr::readonly|Attr::hidden),"Time of the last correction [s]."))
 		((shared_ptr<WorkMeter>,meter,new WorkMeter,(Attr::readonly|Attr::hidden),"Work of the forces."))
 		,/*ctor*/,
