@@ -13,24 +13,19 @@ import hexmembrane  # noqa: E402
 from sources import ROOT, Sources  # noqa: E402
 from sphinx.cmd.build import build_main  # noqa: E402
 
-CSS = """div.math { margin: 1em 0 1em 2em; }
-div.math span.eqno { float: right; }
-table.docutils td, table.docutils th { font-size: 90%; vertical-align: top; }
-div.body { max-width: none; }
-"""
-
 
 def modules():
-	"""Names of the package's modules, sub-package by sub-package; the command line is none."""
-	found = [module.name for module in pkgutil.walk_packages(hexmembrane.__path__, "hexmembrane.")]
-	return [name for name in found if not name.endswith("__main__") and not name.endswith("._load")]
+	"""Names of the package's modules, sub-package by sub-package, and whether it is a sub-package; the command line is none."""
+	found = [(module.name, module.ispkg) for module in pkgutil.walk_packages(hexmembrane.__path__, "hexmembrane.")]
+	return [(name, package) for name, package in found if not name.endswith(("__main__", "._load"))]
 
 
 def pythonPage():
 	title = "Python package"
 	out = [title, "=" * len(title), "", "What a script imports. The map of the modules: :doc:`py/hexmembrane/README`.", ""]
-	for name in modules():
-		out += [name, "-" * len(name), "", f".. automodule:: {name}", "   :members:", ""]
+	for name, package in modules():
+		# what a sub-package hands on is shown where it is made
+		out += [name, "-" * len(name), "", f".. automodule:: {name}", "" if package else "   :members:", ""]
 	return "\n".join(out)
 
 
@@ -43,12 +38,12 @@ def main(out):
 	for room, text in rooms:
 		sources.write(f"classes/{room}.rst", text)
 	sources.write("python.rst", pythonPage())
-	sources.write("_static/site.css", CSS)
 	return build_main(["-W", "--keep-going", "-q", "-b", "html", "-c", str(HERE), "-d", str(work / ".doctrees"), str(work), str(out)])
 
 
 if __name__ == "__main__":
-	code = main(pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "out" / "docs").resolve())
+	site = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "out" / "docs").resolve()
+	code = main(site)
 	if code == 0:
-		print("site: " + str(pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "out" / "docs").resolve() / "index.html"))
+		print(f"site: {site / 'index.html'}")
 	sys.exit(code)

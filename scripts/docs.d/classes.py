@@ -18,6 +18,7 @@ ROOMS = {
 	"diagnostics": "Diagnostics",
 }
 DECLARED = re.compile(r"^\s*YADE_CLASS_BASE_DOC\w*\(\s*(\w+)\s*,\s*(\w+)", re.MULTILINE)
+STATIC = re.compile(r"\.\. ystaticattr:: \w+\.(\w+)\(=([^)]*)\)\n\n\t(.*)")
 MARKED = re.compile(r":y(default|attrtype|attrflags):`([^`]*)`")
 
 
@@ -79,9 +80,13 @@ def page(room, known):
 		values = kind().dict() if hasattr(kind, "dict") else {}
 		others = known - {name}
 		out += [name, "-" * len(name), "", f".. py:class:: {name}", "", f"   Base: {'' if base not in known else ':py:class:'}`{base}`.".replace("`", "``" if base not in known else "`"), ""]
-		out += ["   " + line if line else "" for line in _paragraphs(kind.__doc__ or "(no text)", others).split("\n")] + [""]
+		text = kind.__doc__ or "(no text)"
+		out += ["   " + line if line else "" for line in _paragraphs(STATIC.sub("", text), others).split("\n")] + [""]
+		statics = STATIC.findall(text)
+		for key, value, meaning in statics:
+			out += [f"   .. py:attribute:: {key}", f"      :value: {value}", "", f"      {_rst(MARKED.sub('', meaning).strip(), others)}", ""]
 		for key, member in vars(kind).items():
-			if key.startswith("_"):
+			if key.startswith("_") or key in [static[0] for static in statics]:
 				continue
 			if isinstance(member, property):
 				out.append(_attribute(key, member, values.get(key), others))

@@ -24,3 +24,12 @@ autodoc_typehints = "none"
 autodoc_preserve_defaults = True
 python_use_unqualified_type_names = True
 highlight_language = "none"
+
+
+def escapeBars(app, what, name, thing, options, lines):
+	"""|m| in a document is an absolute value, no substitution."""
+	lines[:] = [line.replace("|", "\\|") for line in lines]
+
+
+def setup(app):
+	app.connect("autodoc-process-docstring", escapeBars)

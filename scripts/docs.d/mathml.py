@@ -7,7 +7,7 @@ from sphinx.util.math import get_node_equation_number
 
 
 def inline(self, node):
-	self.body.append(tex2mathml(node.astext(), inline=True))
+	self.body.append(tex2mathml(node.astext(), as_block=False))
 	raise nodes.SkipNode
 
 
@@ -18,7 +18,7 @@ def display(self, node):
 		self.body.append(f'<span class="eqno">({number})')
 		self.add_permalink_ref(node, "Link to this equation")
 		self.body.append("</span>")
-	self.body.append(tex2mathml(node.astext(), inline=False))
+	self.body.append(tex2mathml(node.astext(), as_block=True))
 	self.body.append("</div>\n")
 	raise nodes.SkipNode
 

@@ -28,7 +28,7 @@ SAYS = {
 	"triaxial": r"strain 0\.00\d+, q \S+ Pa, pressure on the soil [\d.e+]+ Pa",
 	"compact": r"(?s)reference: .* axial (?P<a>\S+) Pa, radial (?P<r>\S+) Pa.*compact: .* axial (?P=a) Pa, radial (?P=r) Pa.*O.interactions: 0\nafter.*: [1-9]\d+",
 	"packing": r"\d{3} grains, wall of 25 mm now 2[0-4][\d.]* mm",
-	"clumps": r"5\d clumps, pressure that arrives [3-6]\S*e\+04 Pa",
+	"clumps": r"60 clumps, pressure that arrives [3-6]\S*e\+04 Pa",
 	"frictmat": r"axial [3-6]\S*e\+04 Pa, radial [3-6]\S*e\+04 Pa",
 	"periodic": r"porosity 0\.7\d+",
 	"body": r"1200 spheres, 2396 triangles, 1\.\d*e\+04 Pa on 4\S+ cm2, resultant \S+e-1[3-9] N",
