@@ -90,9 +90,7 @@ def page(room, known):
 				continue
 			if isinstance(member, property):
 				out.append(_attribute(key, member, values.get(key), others))
-			elif callable(member):
-				out.append(_method(key, member, others))
-			elif isinstance(member, staticmethod):
+			elif callable(getattr(kind, key)):
 				out.append(_method(key, getattr(kind, key), others))
 	return "\n".join(out) + "\n"
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Sphinx' configuration of the site; the sources are made by site.py."""
 
+import re
+
 import hexmembrane
 
 project = "hexmembrane"
@@ -24,12 +26,22 @@ autodoc_typehints = "none"
 autodoc_preserve_defaults = True
 python_use_unqualified_type_names = True
 highlight_language = "none"
+nitpicky = True
+# types of C++, which have no pages
+nitpick_ignore_regex = [("py:class", r"Real|string|std::string|bool|int|long|Vector3r|Body::id_t|.*<.*>")]
 
 
-def escapeBars(app, what, name, thing, options, lines):
-	"""|m| in a document is an absolute value, no substitution."""
-	lines[:] = [line.replace("|", "\\|") for line in lines]
+def plainDocument(app, what, name, thing, options, lines):
+	"""The package's documents as Sphinx reads them: |m| is an absolute value; fields may share a line, and parameters a field."""
+	out = []
+	for line in lines:
+		indent = line[: len(line) - len(line.lstrip())]
+		for field in re.split(r" (?=:(?:param|raises|return)\b)", line.strip()) if line.lstrip().startswith(":param") else [line.strip()]:
+			shared = re.match(r":param ([\w, *]+): (.*)", field)
+			fields = [f":param {each.strip()}: {shared.group(2)}" for each in shared.group(1).split(",")] if shared else [field]
+			out += [indent + each.replace("|", "\\|") for each in fields]
+	lines[:] = out
 
 
 def setup(app):
-	app.connect("autodoc-process-docstring", escapeBars)
+	app.connect("autodoc-process-docstring", plainDocument)

@@ -54,7 +54,7 @@ class LateralBoundary(abc.ABC):
 	@classmethod
 	@abc.abstractmethod
 	def make(cls, config, packing):
-		"""Append its bodies, as configured, round the packing; its :class:`BoundaryParts`."""
+		"""Append its bodies, as configured, round the packing; its :class:`hexmembrane.scene.lateral_boundary.BoundaryParts`."""
 
 	@property
 	@abc.abstractmethod
