@@ -39,7 +39,7 @@ def plainDocument(app, what, name, thing, options, lines):
 		for field in re.split(r" (?=:(?:param|raises|return)\b)", line.strip()) if line.lstrip().startswith(":param") else [line.strip()]:
 			shared = re.match(r":param ([\w, *]+): (.*)", field)
 			fields = [f":param {each.strip()}: {shared.group(2)}" for each in shared.group(1).split(",")] if shared else [field]
-			out += [indent + each.replace("|", "\\|") for each in fields]
+			out += [indent + re.sub(r"(``.*?``)|\|", lambda match: match.group(1) or "\\|", each) for each in fields]
 	lines[:] = out
 
 
