@@ -27,14 +27,14 @@ public:
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(LinearMat,FrictMat,
 		"Material of PFC's linear contact laws, for grains, platens, walls and membrane particles alike; contacts by Ip2_LinearMat_LinearMat_LinearPhys.\n\n"
 		"Stiffness either directly (kn, ks: the body's own spring, in series with the partner's) or by PFC's deformability (emod, kratio: "
-			"kn = π E* min(R1, R2)²/(R1 + R2) between two bodies of the same material, π E* R on a boundary, ks = kn/k*). "
+		"kn = π E* min(R1, R2)²/(R1 + R2) between two bodies of the same material, π E* R on a boundary, ks = kn/k*). "
 		"Stiffness and friction are required; what is not given (NaN) is an error at the first contact. "
-			"A value out of range is refused at once and nothing changes.\n\n"
+		"A value out of range is refused at once and nothing changes.\n\n"
 		"``friction`` is PFC's coefficient μ; YADE's frictionAngle is the one that is kept, arctan μ, "
-			"so that YADE's tools that set it (``setContactFriction``) work. "
+		"so that YADE's tools that set it (``setContactFriction``) work. "
 		"young and poisson follow from the stiffness, do not set them: "
-			"E = π E*/2, with which YADE's own rule for two equal spheres gives the same kn and PWaveTimeStep is of use (NaN for stiffness given "
-			"directly), ν = ks/kn.\n\n"
+		"E = π E*/2, with which YADE's own rule for two equal spheres gives the same kn and PWaveTimeStep is of use (NaN for stiffness given "
+		"directly), ν = ks/kn.\n\n"
 		"Example::\n\n\tO.materials.append(LinearMat(emod=1e8,kratio=3,friction=.4,rollingFriction=.5,density=2650))",
 		((Real,kn,NaN,Attr::triggerPostLoad,"Normal stiffness of the body's spring [N/m], > 0, with ks; or emod and kratio."))
 		((Real,ks,NaN,Attr::triggerPostLoad,"Shear stiffness of the body's spring [N/m], >= 0."))
@@ -126,8 +126,8 @@ public:
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Ip2_LinearMat_LinearMat_LinearPhys,IPhysFunctor,
 		"Makes the LinearPhys of a new contact of two bodies of LinearMat, spheres both or a sphere and a boundary (Platen, Box, Facet, ...).\n\n"
 		"kn, ks: the two bodies' springs in series, 1/k = 1/k1 + 1/k2 (PFC's inheritance of properties given by body); "
-			"a body with emod brings kn = 2 π E* min(R1, R2)²/(R1 + R2) (2 π E* R on a boundary), "
-			"so that equal materials give PFC's deformability formula. "
+		"a body with emod brings kn = 2 π E* min(R1, R2)²/(R1 + R2) (2 π E* R on a boundary), "
+		"so that equal materials give PFC's deformability formula. "
 		"friction, rollingFriction, bond strengths: the smaller one. Rolling stiffness kr = ks Rm², Rm = R1 R2/(R1 + R2), on a boundary R.\n\n"
 		"Existing contacts keep what they were made with. Errors end the program with their message, as every error inside YADE's interaction loop does.",
 		((bool,bondNewContacts,false,,"New contacts whose two materials both have cbTensile > 0 and cbShear > 0 are bonded. "

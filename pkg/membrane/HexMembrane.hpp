@@ -39,6 +39,8 @@ public:
 
 	//! Mean pressure (Pa) that the particles of a group (0: all) press on bodies which are not of the membrane.
 	Real transmittedPressure(int group) const;
+	//! The same of all groups at once: 0, 2 (where there are rows beside the platens) and 3.
+	boost::python::dict transmittedByGroup() const;
 	//! The same ring by ring (Pa).
 	vector<Real> transmittedByRing() const;
 	//! Sum of the normal contact forces of all that is not membrane on each particle (N), from O.interactions and the engines.
@@ -62,6 +64,7 @@ public:
 	Real surfaceArea(const string& surface, Real zBottom, Real zTop) const;
 	Real enclosedVolume(Real zBottom, Real zTop, const string& surface) const;
 	Real meanRadius(Real zBottom, Real zTop, const string& surface) const;
+	vector<Body::id_t> outside(const vector<Body::id_t>& bodies) const;
 
 private:
 	hexmembrane::HexLatticeSpec spec() const;
@@ -78,13 +81,13 @@ private:
 		"A flexible membrane: hexagonal rings of equal spheres round an upright cylindrical specimen. generate appends them as ordinary Sphere bodies; "
 		"MembraneBonds, MembranePressure, MembraneRadialServo and MembraneORings act on them.\n\n"
 		"Whole numbers of touching spheres close each ring exactly, and rings stand at the stress-free distance 2 R sqrt(1 - 1/(4 cos²(π/(2 n)))), "
-			"so that every neighbour is 2 R away and the generated membrane is free of stress. "
+		"so that every neighbour is 2 R away and the generated membrane is free of stress. "
 		"Row groups as in the source study: 1 O-ring rows beyond the specimen's ends, 2 rows beside the platens, 3 the main body.\n\n"
 		"Membrane spheres must not collide with each other: give them a mask and set it as Collider.avoidSelfInteractionMask. "
-			"A frictionless material is usual (friction 0 in the source study).\n\n"
+		"A frictionless material is usual (friction 0 in the source study).\n\n"
 		"Errors (``ValueError``, nothing appended): sizes that are missing, negative, NaN; "
-			"a membrane too coarse to close (fewer than 6 spheres a ring) or, with smallestGrain, too coarse to hold the grains (Eq. 1); "
-			"group rows that overlap.\n\n"
+		"a membrane too coarse to close (fewer than 6 spheres a ring) or, with smallestGrain, too coarse to hold the grains (Eq. 1); "
+		"group rows that overlap.\n\n"
 		"Example::\n\n\tmembrane=HexMembrane(specimenRadius=.02,specimenHeight=.08,particleRadius=.001)\n\tids=membrane.generate()",
 		((Real,specimenRadius,NaN,,"Radius of the specimen [m]. Required."))
 		((Real,specimenHeight,NaN,,"Height of the specimen [m]. Required."))
@@ -126,12 +129,16 @@ private:
 		.def("meanRadius",&HexMembrane::meanRadius,(boost::python::arg("zBottom")=NaN,boost::python::arg("zTop")=NaN,boost::python::arg("surface")="inner"),
 			"Present mean distance [m] of the particles from their ring's centroid, rings between two heights (for Eq. 6); 'inner': "
 			"less the sphere radius.")
+		.def("outside",&HexMembrane::outside,(boost::python::arg("ids")),
+			"Those of the bodies whose centres are outside the surface through the membrane's centres, for bodies between its ends.")
 		.def("transmittedPressure",&HexMembrane::transmittedPressure,(boost::python::arg("group")=0),
 			"Pressure [Pa] that arrives: radial part (towards the centroid of the ring) of the normal contact forces on all other bodies (grains, "
 			"platens' sides), over the present smooth inner area of the particles of a group (0: "
 			"all of groups 2 and 3), 2 π (r - R) a ring times half the distance of its neighbours. "
 			"Smooth and radial, since a membrane that sags between grains has more surface than the cylinder that the pressure is asked for (8 % more "
 			"for R/r = 0.8 at 100 kPa). Positive presses inwards. From the contacts of the last step.")
+		.def("transmittedByGroup",&HexMembrane::transmittedByGroup,
+			"The same for all groups at once, in the time of one: a dict of group (0, 2 where there are platenRows, 3) to pressure [Pa].")
 		.def("transmittedByRing",&HexMembrane::transmittedByRing,
 			"The same for each ring from the bottom, O-ring rows included: a list of rings pressures [Pa]. "
 			"An end ring counts half the distance to its one neighbour twice.")

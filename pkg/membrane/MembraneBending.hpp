@@ -21,7 +21,7 @@ public:
 	Real elasticEnergy() const;
 	Real criticalTimeStep() const;
 	Real springStiffness() const;
-	Real axialTension(Real z) const;
+	vector<Real> axialTension(const vector<Real>& heights) const;
 	Real radialShare(int group) const;
 
 	void prepare() override;
@@ -47,16 +47,16 @@ private:
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneBending,GlobalEngine,
 		"Bending stiffness of a HexMembrane, beside MembraneBonds. Stands before NewtonIntegrator.\n\n"
 		"A linear plate on the lattice, E = kb/2 Σ |B x_i - b0_i|² with B x_i = x_i - (x_1 + ... "
-			"+ x_6)/6 over the six neighbours and b0 that of the generated membrane, which is free of moments. "
+		"+ x_6)/6 over the six neighbours and b0 that of the generated membrane, which is free of moments. "
 		"The forces are -kb Bᵀ (B x - b0). For neighbours at the distance s = 2 R the energy of an area is that of a plate, "
-			"D/2 (κ1 + κ2)² with D = kb s²/(8 sqrt(3)). "
+		"D/2 (κ1 + κ2)² with D = kb s²/(8 sqrt(3)). "
 		"The two end rings have no six neighbours: the ends carry no moment.\n\n"
 		"b0 keeps its direction in space, so what turns the surface by an angle a meets a pressure of the order a D/Rc³, "
-			"with Rc the radius through the centres: 0.5 Pa for latex of 0.3 mm (D = 4e-6 N m, Rc = 20 mm). "
+		"with Rc the radius through the centres: 0.5 Pa for latex of 0.3 mm (D = 4e-6 N m, Rc = 20 mm). "
 		"The term D (1 - ν) of the Gaussian curvature is left out: it acts at free edges only, and a saddle with κ1 = -κ2 costs nothing.\n\n"
 		"With O.trackEnergy the elastic energy is entered as 'elastBending'. Forces are the same to the last bit for any number of threads.\n\n"
 		"Errors: ``ValueError`` for parameters, ``RuntimeError`` for a membrane not generated, a body erased, "
-			"a force that is not finite (with body id and iteration).\n\n"
+		"a force that is not finite (with body id and iteration).\n\n"
 		"Example::\n\n\tMembraneBending(membrane=m,stiffness=5e-5)",
 		((shared_ptr<HexMembrane>,membrane,,,"The membrane. Required."))
 		((Real,stiffness,NaN,,"Bending stiffness D of the plate [N m], at least 0; of a sheet of thickness t: E t³/(12 (1 - ν²)). Required."))
@@ -65,8 +65,8 @@ private:
 		,/*ctor*/,
 		.add_property("springStiffness",&MembraneBending::springStiffness,"kb = 8 sqrt(3) D/(2 R)² [N/m].")
 		.def("elasticEnergy",&MembraneBending::elasticEnergy,"Elastic energy of the bending [J] at the last step.")
-		.def("axialTension",&MembraneBending::axialTension,(boost::python::arg("z")),
-			"Axial force [N] that the bending carries through the horizontal plane at the height z [m], at the last step, tension positive: "
+		.def("axialTension",&MembraneBending::axialTension,(boost::python::arg("heights")),
+			"Axial force [N] that the bending carries through the horizontal plane at each of the heights [m], at the last step, tension positive: "
 			"minus the axial forces on the particles that are not below it now; adds to MembraneBonds.axialTension.")
 		.def("radialShare",&MembraneBending::radialShare,(boost::python::arg("group")=3),
 			"Pressure [Pa] that the bending adds to what reaches the soil at a group (0: all of groups 2 and 3), inwards positive: "

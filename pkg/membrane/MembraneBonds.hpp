@@ -25,7 +25,7 @@ public:
 	int brokenCount() const;
 	Real normalStiffness() const { return law().kn; }
 	Real shearStiffness() const { return law().ks; }
-	Real axialTension(Real z);
+	vector<Real> axialTension(const vector<Real>& heights);
 	Real radialShare(int group);
 
 	void prepare() override;
@@ -54,17 +54,17 @@ private:
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneBonds,GlobalEngine,
 		"Bonds between the six neighbours of every particle of a HexMembrane, without Interaction objects. Stands before NewtonIntegrator.\n\n"
 		"Normal force N = kn (d - L0), tension positive, about the generated distance L0 = 2 R; "
-			"with ks > 0 an incremental shear force that includes both spins. "
+		"with ks > 0 an incremental shear force that includes both spins. "
 		"Stiffness either directly as kn and ks, or as young, thickness and poisson of the sheet through the lattice's closed form "
 		"E t = 2 sqrt(3) kn (kn + ks)/(3 kn + ks), ν = (kn - ks)/(3 kn + ks); ν lies in [0, 1/3], rubber's 0.5 cannot be had by any such lattice. "
 		"With ks = 0 (ν = 1/3) rotations are neither needed nor computed.\n\n"
 		"Strengths are PFC's linear contact bond: a bond whose tension exceeds tensileStrength loses both forces; "
-			"one whose shear exceeds shearStrength keeps what friction holds in compression; a broken bond carries compression only. "
+		"one whose shear exceeds shearStrength keeps what friction holds in compression; a broken bond carries compression only. "
 		"With O.trackEnergy the elastic energy is entered as 'elastMembrane'.\n\n"
 		"Bending stiffness: MembraneBending. There is no thickness change. Forces are the same to the last bit for any number of threads; "
-			"the sums over contacts that they are added to are not.\n\n"
+		"the sums over contacts that they are added to are not.\n\n"
 		"Errors: ``ValueError`` for parameters, ``RuntimeError`` for a membrane not generated, a body erased, "
-			"a force that is not finite (with body id and iteration).\n\n"
+		"a force that is not finite (with body id and iteration).\n\n"
 		"Example::\n\n\tMembraneBonds(membrane=m,young=1.4e6,thickness=.3e-3,poisson=1/3.)",
 		((shared_ptr<HexMembrane>,membrane,,,"The membrane. Required."))
 		((Real,kn,NaN,,"Normal stiffness of a bond [N/m], with ks; or give young, thickness, poisson: normalStiffness tells what they come to."))
@@ -81,8 +81,8 @@ private:
 		,/*ctor*/,
 		.def("elasticEnergy",&MembraneBonds::elasticEnergy,"Elastic energy of all bonds [J] at the last step.")
 		.def("normalForces",&MembraneBonds::normalForces,"Normal force of each bond at the last step [N], tension positive, in the order of HexMembrane.bonds.")
-		.def("axialTension",&MembraneBonds::axialTension,(boost::python::arg("z")),
-			"Axial force [N] that the membrane carries through the horizontal plane at the height z [m], at the last step: "
+		.def("axialTension",&MembraneBonds::axialTension,(boost::python::arg("heights")),
+			"Axial force [N] that the membrane carries through the horizontal plane at each of the heights [m], at the last step: "
 			"the axial parts of the normal and shear forces of all bonds that cross it, tension positive. A thin tube: 2 π r Nz. "
 			"Broken bonds count with what they still carry.")
 		.def("radialShare",&MembraneBonds::radialShare,(boost::python::arg("group")=3),

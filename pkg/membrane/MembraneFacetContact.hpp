@@ -55,23 +55,23 @@ private:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneFacetContact,GlobalEngine,
 		"Contact of grains with the sheet between the particles of a HexMembrane: a grain does not press itself through a stretched mesh. "
-			"Stands before NewtonIntegrator; no collider is needed.\n\n"
+		"Stands before NewtonIntegrator; no collider is needed.\n\n"
 		"The sheet is the triangles of the particles' centres, thickened by the offset h. "
-			"A grain of radius r whose centre is at the distance d from the nearest point of the sheet is pushed away from it with F = kn (r + h - d), "
-			"without friction or damping. "
+		"A grain of radius r whose centre is at the distance d from the nearest point of the sheet is pushed away from it with F = kn (r + h - d), "
+		"without friction or damping. "
 		"Where it reaches several triangles, by the overlaps o_i = r + h - d_i, "
-			"the energy is kn O²/2 with O = (Σ o_i⁴)^(1/4) and each pushes by its part of the gradient, so that a hollow between triangles has no ridge. "
+		"the energy is kn O²/2 with O = (Σ o_i⁴)^(1/4) and each pushes by its part of the gradient, so that a hollow between triangles has no ridge. "
 		"A triangle's corners take the reaction by the barycentric weights of its nearest point; forces and moments balance. "
-			"A centre that is past the sheet by less than h is pushed back inwards.\n\n"
+		"A centre that is past the sheet by less than h is pushed back inwards.\n\n"
 		"A triangle acts while its longest edge is above sqrt(3 ((0.9 R + r)² - (r + h)²)) with r the smallest grain's radius: "
-			"below it the particles themselves keep such grains away. With h = R/4 that is a stretch of 1.10 for R/r = 1.5 and 1.33 for 0.8. "
+		"below it the particles themselves keep such grains away. With h = R/4 that is a stretch of 1.10 for R/r = 1.5 and 1.33 for 0.8. "
 		"It does not act beside a broken bond: a torn sheet leaks.\n\n"
 		"Its contacts are counted wherever contacts are, each as one of every particle that takes a share. "
-			"With O.trackEnergy the elastic energy is entered as 'elastFacet'. "
+		"With O.trackEnergy the elastic energy is entered as 'elastFacet'. "
 		"Forces depend on the places alone, to the last bit, and are the same for any number of threads. "
-			"Grains are the spheres that are not of the membrane; their number and radii are read when lists are made.\n\n"
+		"Grains are the spheres that are not of the membrane; their number and radii are read when lists are made.\n\n"
 		"Errors: ``ValueError`` for parameters, ``RuntimeError`` for a membrane not generated, a body erased, "
-			"a force that is not finite (with body id and iteration).\n\n"
+		"a force that is not finite (with body id and iteration).\n\n"
 		"Example::\n\n\tMembraneFacetContact(membrane=m,bonds=bonds)",
 		((shared_ptr<HexMembrane>,membrane,,,"The membrane. Required."))
 		((shared_ptr<MembraneBonds>,bonds,,,"The membrane's bonds, when they may break. None: the sheet does not tear."))

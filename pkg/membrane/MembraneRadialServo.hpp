@@ -38,13 +38,13 @@ private:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneRadialServo,GlobalEngine,
 		"Confining pressure on the rows beside the platens (group 2 of a HexMembrane): "
-			"a horizontal force on each particle toward the present axis of its ring, F = f σ3 A nr (Eq. 2 of the source study). "
-			"Stands before NewtonIntegrator.\n\n"
+		"a horizontal force on each particle toward the present axis of its ring, F = f σ3 A nr (Eq. 2 of the source study). "
+		"Stands before NewtonIntegrator.\n\n"
 		"Area A of a particle: 'tributary' (default), its share of the ring's present inner surface, 2 π (r - R)/n, "
-			"with r the ring's mean radius times half the distance of the neighbouring rings; "
-			"'cube', the source study's (2 R)², 15.47 % more than the lattice has.\n\n"
+		"with r the ring's mean radius times half the distance of the neighbouring rings; "
+		"'cube', the source study's (2 R)², 15.47 % more than the lattice has.\n\n"
 		"Open loop with an infinite timeConstant T (default): f = 1. With a finite one an integral controller closes the loop, "
-			"T df/dt = (σ3 - pt)/σ3 with pt the mean pressure that group 2 transmits (HexMembrane.transmittedPressure), "
+		"T df/dt = (σ3 - pt)/σ3 with pt the mean pressure that group 2 transmits (HexMembrane.transmittedPressure), "
 		"within 0 and maxFactor. It is corrected 20 times within T. Choose T so that the contacts answer meanwhile: 4 times d sqrt(ρ/p) is slow and safe.\n\n"
 		"Positive pressure pushes toward the axis. With O.trackEnergy minus the work is entered as 'radialServoWork'.\n\n"
 		"Errors: ``ValueError`` for parameters, ``RuntimeError`` for a membrane not generated or without group 2, a body erased.\n\n"

@@ -37,25 +37,25 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(CylinderPacking,Serializable,
 		"Dense random packing of spheres of given radii inside a vertical cylinder (axis +z, flat ends), "
-			"free of overlaps or in equilibrium under a small isotropic stress, evenly dense, isotropic, sizes mixed, without gravity. "
+		"free of overlaps or in equilibrium under a small isotropic stress, evenly dense, isotropic, sizes mixed, without gravity. "
 		"Reproducible: the same input and seed give the same bits with the same program.\n\n"
 		"Method: centres are drawn uniformly; spheres of reduced size are pushed apart as frictionless soft spheres (FIRE minimiser, Bitzek et al., "
-			"Phys. Rev. Lett. 97, 170201, 2006) and grown step by step; a jammed packing is loosened, shaken and grown again. "
+		"Phys. Rev. Lett. 97, 170201, 2006) and grown step by step; a jammed packing is loosened, shaken and grown again. "
 		"Porosity here is 1 - (volume of the spheres)/(pi radius^2 height), walls included.\n\n"
 		"Limits: random close packing of these sizes less the walls' share. "
-			"For a uniform sand in a cylinder twice as high as wide about 0.38 with 7,000 grains and 0.40 with 1,200; "
-			"denser is a RuntimeError that names what was reached. "
+		"For a uniform sand in a cylinder twice as high as wide about 0.38 with 7,000 grains and 0.40 with 1,200; "
+		"denser is a RuntimeError that names what was reached. "
 		"Without a stress there are no contacts afterwards (no overlap, no force): a consolidation makes them.\n\n"
 		"With a stress the packing starts looser and its grains grow inside fixed smooth walls, as linear frictional spheres, slowly. "
-			"Where the stress exceeds the wanted one, friction is lowered until they give way; at the end it has its own value again. "
+		"Where the stress exceeds the wanted one, friction is lowered until they give way; at the end it has its own value again. "
 		"So any porosity between the packing without friction and the one that keeps its friction is reached at the wanted stress (mean within 3 %, "
-			"porosity within porosityTolerance, unbalanced ratio 1e-3); beyond is a RuntimeError that names the porosity reached. "
+		"porosity within porosityTolerance, unbalanced ratio 1e-3); beyond is a RuntimeError that names the porosity reached. "
 		"Without friction there is one porosity at a stress, which a porosity of NaN takes as it comes. "
 		"With 7,000 grains of a uniform sand and a friction of 0.4 that is 0.384 to 0.432. Shear forces of the contacts are not handed over: "
-			"without them the stress stays within a few percent.\n\n"
+		"without them the stress stays within a few percent.\n\n"
 		"Errors: ValueError for bad input, before anything is changed; RuntimeError for a porosity out of reach and for results read before generate.\n\n"
 		"Example: ``p = CylinderPacking(radius=.02, height=.08, radii=[.0017]*2000, porosity=.42, seed=7); p.generate(); "
-			"O.bodies.append([utils.sphere(c, r) for c, r in zip(p.centres, p.sizes)])``",
+		"O.bodies.append([utils.sphere(c, r) for c, r in zip(p.centres, p.sizes)])``",
 		((Real,radius,NaN,,"Radius of the cylinder [m]. Required."))
 		((Real,height,NaN,,"Height of the cylinder [m]. Required."))
 		((Vector3r,origin,Vector3r::Zero(),,"Centre of the cylinder's bottom face [m]."))
