@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The small specimen that the scripts of this folder share: 180 grains, 40 x 40 mm, in a membrane between two platens. triaxial.py has all of it in one file."""
+"""The small specimen that the scripts of this folder share: 180 grains, 40 x 40 mm, in a membrane between two platens."""
 
 from functools import cache
 from math import pi, sqrt
@@ -12,7 +12,11 @@ from yade import O, utils
 from hexmembrane.scene.platens import platen
 
 RADIUS, HEIGHT, EMOD, DENSITY = 0.02, 0.04, 2e7, 2650  # m, m, Pa, kg/m3
-LINEAR = [yade.Ig2_Sphere_Sphere_LinearScGeom(avoidGranularRatcheting=False)], [yade.Ip2_LinearMat_LinearMat_LinearPhys()], [yade.Law2_ScGeom_LinearPhys_Linear()]
+LINEAR = (
+	[yade.Ig2_Sphere_Sphere_LinearScGeom(avoidGranularRatcheting=False)],
+	[yade.Ip2_LinearMat_LinearMat_LinearPhys()],
+	[yade.Law2_ScGeom_LinearPhys_Linear()],
+)
 
 
 def linear(friction, density):

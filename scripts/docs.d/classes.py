@@ -79,7 +79,8 @@ def page(room, known):
 		base = kind.__mro__[1].__name__
 		values = kind().dict() if hasattr(kind, "dict") else {}
 		others = known - {name}
-		out += [name, "-" * len(name), "", f".. py:class:: {name}", "", f"   Base: {'' if base not in known else ':py:class:'}`{base}`.".replace("`", "``" if base not in known else "`"), ""]
+		base = _rst(base, known) if base in known else f"``{base}``"
+		out += [name, "-" * len(name), "", f".. py:class:: {name}", "", f"   Base: {base}.", ""]
 		text = kind.__doc__ or "(no text)"
 		out += ["   " + line if line else "" for line in _paragraphs(STATIC.sub("", text), others).split("\n")] + [""]
 		statics = STATIC.findall(text)
