@@ -60,7 +60,7 @@ class Store:
 	"""The files of one folder, held by one run.
 
 	:param folder: existing folder, locked by the caller where others may come.
-	:param content: its :class:`Manifest`; None: an empty one.
+	:param content: its :class:`hexmembrane.run.manifest.Manifest`; None: an empty one.
 	"""
 
 	def __init__(self, folder, content=None):

@@ -76,7 +76,7 @@ class TriaxialTest:
 		self.stageStart, self.reference = checkpoint.begun, rows.Reference(**checkpoint.reference)
 		self.frames, self.records = Frames(self.out, checkpoint.frames), Records(self.out / RECORDS, checkpoint.records.size)
 		self.inside = Inside(self.config, self.out, checkpoint.inside)
-		self.scene.guard.checkpoint = str(self.out / checkpoint.state)
+		self.scene.tellCheckpoint(self.out / checkpoint.state)
 
 	# What both stages share
 
@@ -157,7 +157,7 @@ class TriaxialTest:
 			if self.scene.loop is None:
 				image.load(self.out / state)
 				self.scene = Scene()
-		self.scene.guard.checkpoint = str(self.out / state)
+		self.scene.tellCheckpoint(self.out / state)
 
 	def _show(self, progress, done):
 		row = self.lastRow
