@@ -8,6 +8,11 @@ import subprocess
 import sys
 
 import pytest
+import specimenScene
+import tiers
+from hexmembrane.measure.rows import Grains, Reference, row
+from hexmembrane.output.records import COLUMNS
+from hexmembrane.scene.handles import Scene
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPTS = ROOT / "examples" / "scripts"
@@ -78,3 +83,15 @@ def test_batchOfATable(tmp_path):
 	text = log.read_text()
 	assert result.returncode == 0 and "shows batch summary" not in result.stdout, result.stdout + result.stderr
 	assert re.search(r"friction 0\.5: axial \S+ Pa", text) and "XMLRPC" not in text, text
+
+
+def test_aRowOfASceneOfOnesOwn(O, tier):
+	"""No guard, no builder: the parts that Scene names are enough for all columns of the records."""
+	specimenScene.build(tier, grains=60, porosity=0.5, particleRadius=4e-3, swell=1.0)
+	tiers.run(20)
+	scene = Scene()
+	found = row(scene, Grains.of(scene.grainIds()), Reference.of(scene), "shear", elapsed=0)
+	assert scene.guard is None and set(found) == {column.name for column in COLUMNS}
+	with pytest.raises(RuntimeError, match="MembranePressure: 1 expected; fix: add one"):
+		(tiers.loop() or O).engines = [engine for engine in (tiers.loop() or O).engines if type(engine).__name__ != "MembranePressure"]
+		Scene()
