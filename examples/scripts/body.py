@@ -45,5 +45,5 @@ O.step()
 for i in O.interactions:  # bonds are at rest where the skin's spheres have begun
 	if {i.id1, i.id2} <= set(ids):
 		i.phys.unp = i.geom.penetrationDepth
-O.run(200 if "SHORT" in os.environ else 6000, True)
+O.run(100 if "SHORT" in os.environ else 6000, True)
 print(f"{len(ids)} spheres, {len(triangles)} triangles, {water.applied:.4g} Pa on {1e4 * water.area:.4g} cm2, resultant {water.resultant.norm():.2g} N")

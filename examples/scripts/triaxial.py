@@ -74,8 +74,8 @@ if "DISPLAY" in os.environ:
 	plot.plot(noShow=False)
 	qt.View()
 
-O.run(300 if short else int(2 * rise / O.dt), True)  # consolidation
+O.run(150 if short else int(2 * rise / O.dt), True)  # consolidation
 start.clear()  # strains count from here
 upper.mode, upper.velocity = "velocity", 0.08  # m/s, positive compresses
-O.run(300 if short else int(0.1 * height / upper.velocity / O.dt), True)  # shear to 10 %
+O.run(150 if short else int(0.1 * height / upper.velocity / O.dt), True)  # shear to 10 %
 print(f"strain {plot.data['strain'][-1]:.4f}, q {plot.data['q'][-1]:.4g} Pa, pressure on the soil {plot.data['transmitted'][-1]:.4g} Pa")

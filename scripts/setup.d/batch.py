@@ -3,10 +3,10 @@
 
 import http.server
 import os
-import runpy
 import shlex
 import shutil
 import sys
+import warnings
 
 from launch import openStreams
 
@@ -23,5 +23,9 @@ if __name__ == "__main__":
 		sys.exit(f"batch.py: {program or 'yade-double'}-batch is not there")
 	http.server.HTTPServer = noServer
 	runs = f"{shlex.quote(sys.executable)} {shlex.quote(os.path.join(os.path.dirname(os.path.abspath(__file__)), 'withoutPorts.py'))}"
+	warnings.simplefilter("ignore", SyntaxWarning)  # of its own source
 	sys.argv = [program + "-batch", "--executable", runs, *sys.argv[1:]]
-	runpy.run_path(program + "-batch", run_name="__main__")
+	__file__ = program + "-batch"
+	with open(__file__, encoding="utf-8") as source:
+		code = compile(source.read(), __file__, "exec")
+	exec(code, globals())  # YADE's libraries look for the running program in __main__, where runpy would put another

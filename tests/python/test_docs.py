@@ -92,7 +92,8 @@ def test_snippets(path):
 			compile(code, path, "exec")
 		elif language == "yaml":
 			yaml.safe_load(code)
-	for words in re.findall(r"(?:^|`)(scripts/[\w-]+(?![\w./])(?: [^`\n#|]*)?)", TEXTS[path], re.MULTILINE):
+	commands = re.sub(r"^```\{.*?^```", "", TEXTS[path], flags=re.MULTILINE | re.DOTALL)
+	for words in re.findall(r"(?:^|`)(scripts/[\w-]+(?![\w./-])(?: [^`\n#|]*)?)", commands, re.MULTILINE):
 		command, *arguments = words.split()
 		assert os.access(ROOT / command, os.X_OK) or (ROOT / command).is_dir(), words
 		files = [word for word in arguments if re.match(r"(examples|pkg|py|tests)/[\w./-]+\.(py|yaml|txt)$", word) and "NAME" not in word]
