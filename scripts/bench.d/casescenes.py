@@ -149,7 +149,7 @@ def gas(folder, short):
 
 def _grainStep():
 	"""What builder.build takes for the critical step of such spheres before there are contacts."""
-	from hexmembrane.configuration.config import Specimen
+	from hexmembrane.configuration.specimen import Specimen
 	from hexmembrane.scene import timestep
 
 	emod = 2 * KN / (math.pi * RADIUS)  # PFC's deformability: kn = pi emod R/2 for equal spheres

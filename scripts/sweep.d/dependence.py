@@ -14,7 +14,7 @@ import pathlib
 from typing import Callable, Optional
 
 from hexmembrane.configuration import toDict
-from hexmembrane.configuration.config import PATHS
+from hexmembrane.configuration.specimen import PATHS
 
 SPECIMEN, CONSOLIDATION, SHEAR = STAGES = ("specimen", "consolidation", "shear")
 #: Raised when the same keys name another result, so that no folder of before is taken for it.
@@ -81,6 +81,8 @@ TABLE = {
 	"specimen.stress": _PACKED,
 	"specimen.friction": (At(SPECIMEN, _stressed), At(CONSOLIDATION, lambda config: config.consolidation.friction is None), At(SHEAR)),
 	"specimen.packingRollingFriction": (At(SPECIMEN, _stressed),),
+	"specimen.kn": _STIFFNESS,
+	"specimen.ks": _STIFFNESS,
 	"specimen.emod": _STIFFNESS,
 	"specimen.kratio": _STIFFNESS,
 	"specimen.*": _ALWAYS[CONSOLIDATION],

@@ -10,7 +10,7 @@ import pathlib
 from dependence import flat, stageOf
 from hexmembrane import configuration
 from hexmembrane.configuration import Config, ConfigError, derived, toDict
-from hexmembrane.configuration.config import PATHS
+from hexmembrane.configuration.specimen import PATHS
 from hexmembrane.configuration.reader import read
 
 #: Key of a study's file -> what it is.

@@ -10,75 +10,12 @@ import os
 from typing import Optional
 
 from hexmembrane.configuration.measure import Measure
-from hexmembrane.configuration.schema import LONGEST_PATH, REQUIRED, ConfigError, build, key, paths, section, shared, toDict
+from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, paths, section, shared, toDict
+from hexmembrane.configuration.specimen import PATHS, Specimen
+from hexmembrane.configuration.stiffness import Springs, checkSprings, ownKey, springsOf
 
-#: Keys of the specimen that are files.
-PATHS = ("packing", "gradation")
 #: Poisson's ratio of a lattice whose bonds have no shear stiffness, and how near to it a value, written with six digits say, is it.
 _CENTRAL, _NEAR = 1 / 3, 1e-6
-
-
-@dataclasses.dataclass
-class Specimen:
-	"""The grains: gradation, packing, contact law."""
-
-	radius: float = key(REQUIRED, "radius of the specimen", "m", low=0, openLow=True)
-	height: float = key(REQUIRED, "height of the specimen", "m", low=0, openLow=True)
-	packing: Optional[str] = key(None, "packing file to take instead of making one; relative to the configuration's folder", free=True, longest=LONGEST_PATH)
-	gradation: Optional[str] = key(None, "CSV file of the gradation (see gradation.py); relative to the configuration's folder", free=True, longest=LONGEST_PATH)
-	scale: Optional[float] = key(
-		None, "factor on the gradation's diameters; none with a wished number of grains: it follows from that", "", low=0, openLow=True
-	)
-	cutBelow: Optional[float] = key(None, "leave out grains with a diameter below this, before scaling", "m", low=0)
-	cutAbove: Optional[float] = key(None, "leave out grains with a diameter above this, before scaling", "m", low=0, openLow=True)
-	grains: Optional[int] = key(None, "number of grains wished; none: follows from porosity, volume and scale", "", low=20, high=1000000)
-	porosity: float = key(
-		0.40, "porosity of the packing, before consolidation; grains without friction under a stress have their own, leave the key out", "", low=0.3, high=0.6
-	)
-	seed: int = shared("packing_seed", "seed of the packing's random numbers", high=2**31 - 1)
-	density: float = key(2650.0, "density of the grains", "kg/m3", low=0, openLow=True)
-	stress: Optional[float] = key(
-		None,
-		"isotropic stress under which the packing is made, small against the test's; none: grains that touch nothing",
-		"Pa",
-		low=0,
-		openLow=True,
-	)
-	friction: float = shared(
-		"friction",
-		"coefficient of friction mu between grains, tan of the angle, Fs <= mu Fn: in shear, in consolidation unless that has its own, "
-		"and in a packing made under stress",
-		default=0.5,
-		high=5,
-	)
-	rollingFriction: float = shared("rolling_friction", "coefficient of rolling friction mu_r between grains, moment <= mu_r R1 R2/(R1 + R2) Fn", high=5)
-	packingRollingFriction: float = shared(
-		"rolling_friction", "coefficient of rolling friction while a packing is made under stress; looser ones need it, it may be rollingFriction's value", high=5
-	)
-	emod: float = key(
-		4e7,
-		"contact modulus of PFC's deformability: kn = pi emod min(R1, R2)^2/(R1 + R2), pi emod R on platens and wall; "
-		"equal grains of diameter d: kn/(p d) = pi emod/(4 p), at 314 the peak of q was 10 %, at 1000 4 % above that at 3000 (examples/accuracy)",
-		"Pa",
-		low=0,
-		openLow=True,
-	)
-	kratio: float = shared("stiffness_ratio", "kn/ks of the contacts", high=1000)
-	massScaling: bool = key(
-		False,
-		"grains smaller than the largest get its mass times their share of its radius, m = m_max r/r_max: all grains then have the critical step of the "
-		"largest, volumes and forces stay, inertia grows",
-	)
-
-	def check(self, path):
-		if (self.packing is None) == (self.gradation is None):
-			raise ConfigError(
-				f"{path}.gradation", self.gradation, "the grains need one source, a gradation or a packing", "give exactly one of the two"
-			)
-		if self.scale is not None and self.grains is not None:
-			raise ConfigError(f"{path}.scale", self.scale, "the number of grains is wished too, it fixes the scale", "remove one of the two")
-		if None not in (self.cutBelow, self.cutAbove) and self.cutBelow >= self.cutAbove:
-			raise ConfigError(f"{path}.cutBelow", self.cutBelow, f"is not below cutAbove = {self.cutAbove}", "swap or change the cuts")
 
 
 @dataclasses.dataclass
@@ -106,6 +43,11 @@ class Membrane:
 		3e-4, "thickness of the material; only young * thickness matters, twice pressure * grain radius or more", "m", low=0, openLow=True
 	)
 	poisson: float = shared("lattice_poisson", "in-plane Poisson's ratio of the lattice; 1/3 has central forces only", default=_CENTRAL)
+	contactKn: Optional[float] = key(
+		None,
+		"normal stiffness of a membrane sphere's own spring towards grains and platens, in series with theirs; none: the grains' own", "N/m", low=0, openLow=True
+	)
+	contactKs: Optional[float] = key(None, "shear stiffness of the same spring, which acts where there is friction; none: contactKn", "N/m", low=0, openLow=True)
 	density: float = key(1000.0, "density of the membrane's spheres", "kg/m3", low=0, openLow=True)
 	densityScaling: Optional[float] = key(
 		1.0, "factor on the mass of the membrane's spheres, for a longer time step where they set it; none: as much as lets the grains set it", "", low=1
@@ -180,6 +122,8 @@ class Membrane:
 			raise ConfigError(
 				f"{path}.shearStrength", self.shearStrength, "bonds with poisson = 1/3 carry no shear force", "leave it out, or lower poisson"
 			)
+		if self.contactKs is not None and self.contactKn is None:
+			raise ConfigError(f"{path}.contactKn", None, "the stiffness is given in half", "give contactKn too, or remove contactKs")
 
 
 @dataclasses.dataclass
@@ -187,6 +131,10 @@ class Wall:
 	"""The rigid cylinder wall of ``boundary: wall``: one radius, moved by a servo that holds the mean radial stress."""
 
 	friction: float = shared("friction", "coefficient of friction on the wall; with grains the lesser of both acts", default=0.0, high=5)
+	kn: Optional[float] = ownKey("normal stiffness of the wall's own spring towards the grains, with ks; with grains both springs are in series", "N/m")
+	ks: Optional[float] = ownKey("shear stiffness of the same spring", "N/m")
+	emod: Optional[float] = ownKey("contact modulus of the wall's own, instead of kn and ks", "Pa")
+	kratio: Optional[float] = ownKey("kn/ks with emod", "", low=1.0, high=1000)
 	damping: float = shared(
 		"servo_damping",
 		"damping ratio of the radial servo, 1: critical for the wall's contacts alone; while the radius grows at v the wall carries "
@@ -198,6 +146,9 @@ class Wall:
 	maxVelocity: Optional[float] = key(
 		None, "largest velocity of the radius; none: 1e-3 radius/(d sqrt(rho/pressure)), an inertial number of 1e-3", "m/s", low=0, openLow=True
 	)
+
+	def check(self, path):
+		checkSprings(path, self)
 
 
 @dataclasses.dataclass
@@ -213,6 +164,13 @@ class Platens:
 		default=0.0,
 		high=5,
 	)
+	kn: Optional[float] = ownKey("normal stiffness of the platens' own spring towards the grains, with ks; with grains both springs are in series", "N/m")
+	ks: Optional[float] = ownKey("shear stiffness of the same spring", "N/m")
+	emod: Optional[float] = ownKey("contact modulus of the platens' own, instead of kn and ks", "Pa")
+	kratio: Optional[float] = ownKey("kn/ks with emod", "", low=1.0, high=1000)
+
+	def check(self, path):
+		checkSprings(path, self)
 
 
 @dataclasses.dataclass
@@ -371,3 +329,13 @@ class Config:
 					raise ConfigError(f"specimen.{name}", path, "there is no such file", "correct the path")
 				setattr(config.specimen, name, path)
 		return config
+
+	def springs(self, group):
+		"""Stiffness of a group's own springs: of "specimen" (the grains), "membrane", "platens" or "wall"; where a group has none of its own, the grains'.
+
+		:returns: :class:`hexmembrane.configuration.stiffness.Springs`.
+		"""
+		section = getattr(self, group)
+		if group == "membrane":
+			return Springs(section.contactKn, section.contactKs or section.contactKn) if section.contactKn else self.specimen.springs
+		return springsOf(section) or self.specimen.springs

@@ -3,7 +3,8 @@
 
 A section is a dataclass whose fields are made by :func:`key`; each states its purpose, unit, default and range once, and
 that one statement checks the input, writes the resolved configuration and makes the table of keys in the documentation.
-A section may have a method ``check(path)`` for what concerns several keys at once.
+A section may have a method ``check(path)`` for what concerns several keys at once, and a class method ``prepared(values)`` for defaults that depend on
+what is given.
 """
 
 import csv
@@ -15,6 +16,7 @@ import pathlib
 import typing
 import unicodedata
 
+from hexmembrane.configuration import pfc
 
 #: Characters of a value that a message shows.
 _SHOWN = 200
@@ -22,7 +24,7 @@ _SHOWN = 200
 LONGEST_TEXT, LONGEST_PATH = 200, 4000
 #: What a number other than 0 is at least and at most in size, by unit: beyond it is a slip of the unit, and products of such numbers leave the range of floats.
 SIZES = {
-	"m": (1e-9, 1e4), "m/s": (1e-12, 1e4), "s": (1e-15, 1e9), "Pa": (1e-3, 1e15), "N": (1e-12, 1e12), "N m": (1e-18, 1e9), "kg/m3": (1e-3, 1e9), "": (1e-15, 1e9)
+	"m": (1e-9, 1e4), "m/s": (1e-12, 1e4), "s": (1e-15, 1e9), "Pa": (1e-3, 1e15), "N": (1e-12, 1e12), "N/m": (1e-6, 1e15), "N m": (1e-18, 1e9), "kg/m3": (1e-3, 1e9), "": (1e-15, 1e9)
 }  # fmt: skip
 
 
@@ -218,10 +220,14 @@ def build(cls, mapping, path=""):
 	for name in mapping:
 		if name in getattr(cls, "REPLACED", ()):
 			raise ConfigError(f"{at}{name}", mapping[name], "is no key any more", cls.REPLACED[name])
+		if name not in fields and (here := pfc.named(name, path)):
+			raise ConfigError(f"{at}{name}", mapping[name], "is PFC's name", f"here it is {here}")
 		if name not in fields:
 			raise ConfigError(
 				f"{at}{name}", mapping[name], "unknown key", f"{_guess(name, fields)}known keys are {', '.join(fields)}"
 			)
+	if hasattr(cls, "prepared"):
+		mapping = cls.prepared(mapping)
 	values = {}
 	for name, field in fields.items():
 		if "section" in field.metadata:

@@ -166,17 +166,20 @@ def requireThreads(config, machine=None):
 		)
 
 
-def requireStiffness(config):
+def requireStiffness(config, radii):
 	"""Check that the contacts carry the pressure.
 
+	:param radii: of the grains [m].
 	:raises ConfigError: kn/(p d) is below LEAST_LEVEL.
 	"""
-	emod, pressure = config.specimen.emod, config.consolidation.pressure
-	level = timestep.stiffnessLevel(emod, pressure)
+	springs, pressure = config.specimen.springs, config.consolidation.pressure
+	level = timestep.levelOf(springs, radii, pressure)
 	if level < LEAST_LEVEL:
+		value, unit = (springs.kn, "N/m") if springs.direct else (springs.emod, "Pa")
 		raise ConfigError(
-			"specimen.emod", emod, f"gives kn/(p d) = {level:.3g} at {pressure:g} Pa, so soft that grains pass through one another; {LEAST_LEVEL} is the least",
-			f"at least {4 * pressure * LEAST_LEVEL / math.pi:.3g} Pa, {4 * pressure * 300 / math.pi:.3g} Pa for small overlaps",
+			config.specimen.stiffnessKey, value,
+			f"gives kn/(p d) = {level:.3g} at {pressure:g} Pa, so soft that grains pass through one another; {LEAST_LEVEL} is the least",
+			f"at least {value * LEAST_LEVEL / level:.3g} {unit}, {value * 300 / level:.3g} {unit} for small overlaps",
 		)  # fmt: skip
 
 
@@ -212,7 +215,7 @@ def _step(config, radii, particleRadius):
 		return numerics.safety * grains
 	mass = timestep.sphereMass(particleRadius, keys.density)
 	bonds = 2 * math.sqrt(mass / (6 * keys.young * keys.thickness / (math.sqrt(3) * (1 - keys.poisson))))
-	membrane = timestep.membraneStep(specimen, keys.density, float(radii.max()), particleRadius, bonds)
+	membrane = timestep.membraneStep(specimen.springs, config.springs("membrane"), keys.density, float(radii.max()), particleRadius, bonds)
 	return numerics.safety * min(grains, math.sqrt(timestep.densityScaling(keys.densityScaling, grains, membrane)) * membrane)
 
 

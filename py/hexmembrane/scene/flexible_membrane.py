@@ -44,7 +44,7 @@ def generate(config, particleRadius, smallest):
 	:raises ValueError: it is too coarse for the specimen or the grains, and such.
 	"""
 	keys, grain = config.membrane, config.specimen
-	O.materials.append(yade.LinearMat(emod=grain.emod, kratio=grain.kratio, friction=0, density=keys.density, label="membrane"))
+	O.materials.append(yade.LinearMat(friction=0, density=keys.density, label="membrane", **config.springs("membrane").given()))
 	membrane = yade.HexMembrane(
 		specimenRadius=grain.radius,
 		specimenHeight=grain.height,
@@ -143,7 +143,8 @@ class FlexibleMembrane(LateralBoundary):
 		membrane = generate(config, keys.particleRadius or keys.sizeRatio * smallest, smallest)
 		bending = bendingStiffness(config, packing.radii)
 		sheet = sheetEngines(keys, membrane, bending)
-		unscaled = timestep.membraneStep(config.specimen, keys.density, largest, membrane.sphereRadius, sheetStep(sheet))
+		springs = config.specimen.springs, config.springs("membrane")
+		unscaled = timestep.membraneStep(*springs, keys.density, largest, membrane.sphereRadius, sheetStep(sheet))
 		scaling = timestep.densityScaling(keys.densityScaling, timestep.grainStep(config.specimen, packing.radii), unscaled)
 		scaleDensity(membrane, scaling)
 

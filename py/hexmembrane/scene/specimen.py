@@ -78,7 +78,7 @@ def make(config, say):
 	"""Pack the grains of the configuration's gradation into the cylinder that its lateral boundary will enclose.
 
 	Under ``specimen.stress`` the modulus is such that contacts of equal grains are as stiff as the test's: CylinderPacking's rule is
-	kn = 2 young r1 r2/(r1 + r2), PFC's pi emod min(r1, r2)^2/(r1 + r2), equal with young = pi emod/2.
+	kn = 2 young r1 r2/(r1 + r2), PFC's pi emod min(r1, r2)^2/(r1 + r2), equal with young = pi emod/2. A direct stiffness is met by grains of the mean size.
 
 	Grains without friction have one porosity under that stress: without the key ``specimen.porosity`` it is theirs, with it what is given must be it.
 
@@ -87,19 +87,21 @@ def make(config, say):
 	"""
 	keys = config.specimen
 	radius = soilRadius(config)
+	sizes = radii(keys, radius, keys.height)
 	stressed, porosity = {}, keys.porosity
 	if keys.stress is not None:
 		if keys.friction == 0 and "specimen.porosity" not in config.given:
 			porosity = math.nan
-		stressed = {"stress": keys.stress, "young": math.pi * keys.emod / 2, "stiffnessRatio": keys.kratio}
+		mean = float((sizes**3).mean()) ** (1 / 3)
+		stressed = {"stress": keys.stress, "young": keys.springs.own(mean / 2) / (2 * mean), "stiffnessRatio": keys.springs.ratio}
 		stressed.update(friction=keys.friction, rollingFriction=keys.packingRollingFriction)
 	generator = yade.CylinderPacking(
-		radius=radius, height=keys.height, radii=radii(keys, radius, keys.height).tolist(), porosity=porosity, seed=keys.seed, **stressed
+		radius=radius, height=keys.height, radii=sizes.tolist(), porosity=porosity, seed=keys.seed, **stressed
 	)
 	generator.generate()
 	packing = packing_file.Packing.of(generator, gradation=pathlib.Path(keys.gradation).name)
-	sizes = f"{1e3 * packing.radii.min():.4g} to {1e3 * packing.radii.max():.4g} mm"
-	say(f"specimen: {len(packing)} grains of radius {sizes}, porosity {packing.porosity:.4f}")
+	span = f"{1e3 * packing.radii.min():.4g} to {1e3 * packing.radii.max():.4g} mm"
+	say(f"specimen: {len(packing)} grains of radius {span}, porosity {packing.porosity:.4f}")
 	if stressed:
 		side, ends = 1e-3 * generator.radialStress, 1e-3 * generator.axialStress
 		say(f"packed under {side:.4g} kPa (side) and {ends:.4g} kPa (ends), coordination {generator.coordination:.3g}")
