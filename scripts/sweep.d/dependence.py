@@ -30,7 +30,7 @@ class At:
 
 
 def _made(config):
-	return config.specimen.packing is None
+	return config.specimen.made
 
 
 def _stressed(config):
@@ -71,7 +71,13 @@ TABLE = {
 	"specimen.radius": _ALWAYS[SPECIMEN],
 	"specimen.height": _ALWAYS[SPECIMEN],
 	"specimen.packing": _ALWAYS[SPECIMEN],
+	"specimen.balls": _ALWAYS[SPECIMEN],
+	"specimen.ballsUnit": (At(SPECIMEN, lambda config: config.specimen.balls is not None),),
 	"specimen.gradation": _PACKED,
+	"specimen.radiusRange": _PACKED,
+	"specimen.radiusMean": _PACKED,
+	"specimen.radiusDeviation": _PACKED,
+	"specimen.radiusBins": _PACKED,
 	"specimen.scale": _PACKED,
 	"specimen.cutBelow": _PACKED,
 	"specimen.cutAbove": _PACKED,

@@ -9,6 +9,7 @@ import math
 import os
 from typing import Optional
 
+from hexmembrane.configuration import balls
 from hexmembrane.configuration.measure import Measure
 from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, paths, section, shared, toDict
 from hexmembrane.configuration.specimen import PATHS, Specimen
@@ -320,7 +321,6 @@ class Config:
 		config.given = frozenset(paths(values if isinstance(values, dict) else toDict(config)))
 		if config.membrane.placement == "centred" and config.membrane.particleRadius is None:
 			raise ConfigError("membrane.placement", "centred", "the soil's radius then follows from the particle's radius", "give membrane.particleRadius")
-		config.measure.checkWith(config.specimen, config.shear)
 		for name in PATHS:
 			path = getattr(config.specimen, name)
 			if path is not None:
@@ -328,7 +328,17 @@ class Config:
 				if not os.path.isfile(path):
 					raise ConfigError(f"specimen.{name}", path, "there is no such file", "correct the path")
 				setattr(config.specimen, name, path)
+		config._takeSizeOfBalls()
+		config.measure.checkWith(config.specimen, config.shear)
 		return config
+
+	def _takeSizeOfBalls(self):
+		"""A specimen of balls that says no radius or height has those of the cylinder round them."""
+		keys = self.specimen
+		if keys.balls is not None and None in (keys.radius, keys.height):
+			found = balls.read(keys.balls, keys.ballsUnit)
+			around = balls.circumscribed(found.centres, found.radii)
+			keys.radius, keys.height = keys.radius or around.radius, keys.height or around.height
 
 	def springs(self, group):
 		"""Stiffness of a group's own springs: of "specimen" (the grains), "membrane", "platens" or "wall"; where a group has none of its own, the grains'.

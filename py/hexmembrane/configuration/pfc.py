@@ -11,7 +11,7 @@ NAMES = {
 	"rr_fric": {"specimen": "specimen.rollingFriction", "": "specimen.rollingFriction; platens, wall and membrane have none"},
 	"damp": {"": "numerics.damping"},
 	"density": {"": "density, in specimen or membrane"},
-	"radius": {"membrane": "membrane.particleRadius", "": "specimen.radius for the specimen; sizes of grains are specimen.gradation or specimen.sizes"},
+	"radius": {"membrane": "membrane.particleRadius", "": "specimen.radius for the specimen; sizes of grains are specimen.radiusRange, radiusMean, radiusBins or gradation"},
 	"kn": {"membrane": "membrane.contactKn towards the soil; a bond of the sheet has kn = young thickness/(sqrt(3) (1 - poisson))", "": "specimen.kn, platens.kn or wall.kn"},
 	"ks": {
 		"membrane": "membrane.contactKs towards the soil; a bond of the sheet has ks = kn (1 - 3 poisson)/(1 + poisson)",

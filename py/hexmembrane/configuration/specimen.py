@@ -2,25 +2,53 @@
 """The section ``specimen`` of a configuration: the grains. Uses nothing of YADE."""
 
 import dataclasses
-from typing import Optional
+from typing import List, Optional
 
-from hexmembrane.configuration.schema import LONGEST_PATH, REQUIRED, ConfigError, key, shared
+from hexmembrane.configuration.balls import UNITS
+from hexmembrane.configuration.schema import LONGEST_PATH, ConfigError, key, shared
 from hexmembrane.configuration.stiffness import checkSprings, springsOf
 
 #: Keys that are files.
-PATHS = ("packing", "gradation")
+PATHS = ("packing", "gradation", "balls")
+#: Where the grains come from: each key is a source of its own.
+SOURCES = ("gradation", "radiusRange", "radiusMean", "radiusBins", "packing", "balls")
+#: A Gaussian distribution without a range is cut off this many standard deviations from its mean.
+_DEVIATIONS = 3
 
 
 @dataclasses.dataclass
 class Specimen:
 	"""The grains: gradation, packing, contact law."""
 
-	radius: float = key(REQUIRED, "radius of the specimen", "m", low=0, openLow=True)
-	height: float = key(REQUIRED, "height of the specimen", "m", low=0, openLow=True)
+	radius: Optional[float] = key(None, "radius of the specimen, required; with balls none: that of the cylinder round them", "m", low=0, openLow=True)
+	height: Optional[float] = key(None, "height of the specimen, required; with balls none: that of the cylinder round them", "m", low=0, openLow=True)
 	packing: Optional[str] = key(None, "packing file to take instead of making one; relative to the configuration's folder", free=True, longest=LONGEST_PATH)
 	gradation: Optional[str] = key(None, "CSV file of the gradation (see gradation.py); relative to the configuration's folder", free=True, longest=LONGEST_PATH)
+	balls: Optional[str] = key(
+		None,
+		"CSV table of balls to take as they are, columns x, y, z, r and id in any order, PFC's for example; relative to the configuration's folder",
+		free=True,
+		longest=LONGEST_PATH,
+	)
+	ballsUnit: str = key("m", "unit of the table of balls", choices=tuple(UNITS))
+	radiusRange: Optional[List[float]] = key(
+		None,
+		"[least, largest] radius of grains, all between them as frequent by number (PFC's ball distribute radius); with radiusMean where it is cut off",
+		"m",
+		low=0,
+		openLow=True,
+	)
+	radiusMean: Optional[float] = key(None, "mean radius of a Gaussian distribution by number (PFC's gauss), with radiusDeviation", "m", low=0, openLow=True)
+	radiusDeviation: Optional[float] = key(None, "standard deviation of that distribution, cut off at radiusRange or at 3 of them", "m", low=0, openLow=True)
+	radiusBins: Optional[List[List[float]]] = key(
+		None,
+		"bins [least radius, largest radius, share of the volume], in each all radii as frequent by number (PFC's bin); shares are of their sum",
+		"m",
+		low=0,
+		openLow=True,
+	)
 	scale: Optional[float] = key(
-		None, "factor on the gradation's diameters; none with a wished number of grains: it follows from that", "", low=0, openLow=True
+		None, "factor on the diameters of gradation or radii; none with a wished number of grains: it follows from that", "", low=0, openLow=True
 	)
 	cutBelow: Optional[float] = key(None, "leave out grains with a diameter below this, before scaling", "m", low=0)
 	cutAbove: Optional[float] = key(None, "leave out grains with a diameter above this, before scaling", "m", low=0, openLow=True)
@@ -73,10 +101,14 @@ class Specimen:
 	)
 
 	def check(self, path):
-		if (self.packing is None) == (self.gradation is None):
-			raise ConfigError(
-				f"{path}.gradation", self.gradation, "the grains need one source, a gradation or a packing", "give exactly one of the two"
-			)
+		for name in ("radius", "height"):
+			if getattr(self, name) is None and self.balls is None:
+				raise ConfigError(f"{path}.{name}", None, "is missing", f"give {name} of the specimen (m)")
+		given = [name for name in SOURCES if getattr(self, name) is not None and not (name == "radiusRange" and self.radiusMean is not None)]
+		if len(given) != 1:
+			wrong = f"the grains need one source, {', '.join(given) or 'nothing'} is given"
+			raise ConfigError(f"{path}.{(given or SOURCES)[0]}", getattr(self, (given or SOURCES)[0]), wrong, f"give exactly one of {', '.join(SOURCES)}")
+		self._checkSizes(path)
 		if self.scale is not None and self.grains is not None:
 			raise ConfigError(f"{path}.scale", self.scale, "the number of grains is wished too, it fixes the scale", "remove one of the two")
 		if None not in (self.cutBelow, self.cutAbove) and self.cutBelow >= self.cutAbove:
@@ -84,6 +116,34 @@ class Specimen:
 		checkSprings(path, self)
 		if self.springs is None:
 			raise ConfigError(f"{path}.emod", None, "the grains have no stiffness", "give emod and kratio, or kn and ks")
+
+	def _checkSizes(self, path):
+		"""What is given by number."""
+		if (self.radiusMean is None) != (self.radiusDeviation is None):
+			raise ConfigError(f"{path}.radiusDeviation", self.radiusDeviation, "the distribution is given in half", "give both radiusMean and radiusDeviation")
+		if self.radiusRange is not None and (len(self.radiusRange) != 2 or not self.radiusRange[0] <= self.radiusRange[1]):
+			raise ConfigError(f"{path}.radiusRange", self.radiusRange, "is not a least and a largest radius", "give [least, largest] in m")
+		if self.radiusMean is not None and self.radiusRange is None and self.radiusMean <= _DEVIATIONS * self.radiusDeviation:
+			wrong = f"reaches down to radii below 0, {_DEVIATIONS} standard deviations are {_DEVIATIONS * self.radiusDeviation:g} m"
+			raise ConfigError(f"{path}.radiusMean", self.radiusMean, wrong, "give radiusRange, where it is cut off, or a smaller radiusDeviation")
+		if self.radiusMean is not None and self.radiusRange is not None and not self.radiusRange[0] < self.radiusMean < self.radiusRange[1]:
+			raise ConfigError(f"{path}.radiusMean", self.radiusMean, f"is not inside radiusRange = {self.radiusRange}", "give a range round it")
+		for k, one in enumerate(self.radiusBins or ()):
+			if len(one) != 3 or not one[0] <= one[1]:
+				raise ConfigError(f"{path}.radiusBins[{k}]", one, "is not a bin", "give [least radius, largest radius, share of the volume]")
+		if self.radiusBins == []:
+			raise ConfigError(f"{path}.radiusBins", [], "are no bins", "give bins, or remove the key")
+
+	@property
+	def made(self):
+		"""Whether the grains are packed here, and not given one by one."""
+		return self.packing is None and self.balls is None
+
+	@property
+	def gaussianRange(self):
+		"""Radii [m] at which the Gaussian distribution is cut off."""
+		reach = _DEVIATIONS * self.radiusDeviation
+		return self.radiusRange or [self.radiusMean - reach, self.radiusMean + reach]
 
 	@classmethod
 	def prepared(cls, values):
