@@ -25,7 +25,7 @@ def _rows(test, velocities, steps):
 		test.scene.topDrive.velocity = velocities(test.rowCount)
 		test.advance(steps)
 		test.row()
-		test._maybeCheckpoint()
+		test.maybeCheckpoint()
 
 
 def _stepsOf(test, strain):
@@ -57,7 +57,7 @@ def rest(steps):
 		while test.rowCount <= test.config.output.records:
 			test.advance(steps // test.config.output.records)
 			test.row()
-			test._maybeCheckpoint()
+			test.maybeCheckpoint()
 
 	return drive
 

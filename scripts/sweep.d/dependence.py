@@ -68,6 +68,7 @@ TABLE = {
 	"accuracy": (),  # what it chooses is settled before anything is named
 	"tier": _ALWAYS[CONSOLIDATION],
 	"boundary": _ALWAYS[CONSOLIDATION],
+	"stages": _ALWAYS[CONSOLIDATION],  # refused in a study
 	"specimen.radius": _ALWAYS[SPECIMEN],
 	"specimen.height": _ALWAYS[SPECIMEN],
 	"specimen.packing": _ALWAYS[SPECIMEN],

@@ -71,7 +71,7 @@ BAD = [
 	("specimen.height", "", "is not a number", "m"),
 	("specimen.raduis", 0.02, "unknown key", "did you mean 'radius'"),
 	("speciman", {}, "unknown key", "did you mean 'specimen'"),
-	("qwertz", 1, "unknown key", "known keys are title, accuracy, tier, boundary, specimen"),
+	("qwertz", 1, "unknown key", "known keys are title, accuracy, tier, boundary, stages, specimen"),
 	("specimen", 5, "is not a mapping", "key: value"),
 	("specimen", [1], "is not a mapping", "key: value"),
 	("specimen.grains", 100.5, "is not a whole number", "whole number"),
@@ -201,7 +201,7 @@ def test_resolvedRoundTrip(folder):
 	assert {"date", "hexmembrane", "commit", "yade", "python", "numpy", "threads"} <= set(text["made"])
 	assert text["made"]["yade"] and text["made"]["threads"] >= 1
 	keys = {row[0] for row in table(Config)}
-	assert keys == {f"{a}.{b}" for a, part in text.items() if isinstance(part, dict) and a != "made" for b in part} | {"title", "accuracy", "tier", "boundary"}
+	assert keys == {f"{a}.{b}" for a, part in text.items() if isinstance(part, dict) and a != "made" for b in part} | {"title", "accuracy", "tier", "boundary", "stages"}
 	assert toDict(configuration.load(folder / "resolved.yaml")) == toDict(made)
 	assert not list(folder.glob("*.part"))
 

@@ -12,6 +12,7 @@ ORDER = ("configuration", "scene", "measure", "output", "run")
 WITHOUT_YADE = (
 	"configuration.pfc",
 	"configuration.specimen",
+	"configuration.stages",
 	"configuration.stiffness",
 	"configuration.schema",
 	"configuration.config",

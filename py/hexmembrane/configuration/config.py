@@ -7,12 +7,13 @@
 import dataclasses
 import math
 import os
-from typing import Optional
+from typing import List, Optional
 
 from hexmembrane.configuration import balls
 from hexmembrane.configuration.measure import Measure
 from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, paths, section, shared, toDict
 from hexmembrane.configuration.specimen import PATHS, Specimen
+from hexmembrane.configuration.stages import Stage, checkPlan
 from hexmembrane.configuration.stiffness import Springs, checkSprings, ownKey, springsOf
 
 #: Poisson's ratio of a lattice whose bonds have no shear stiffness, and how near to it a value, written with six digits say, is it.
@@ -299,6 +300,9 @@ class Config:
 	boundary: str = key(
 		"membrane", "lateral boundary of the specimen: flexible membrane or rigid cylinder wall; the packing is the same", "", choices=("membrane", "wall")
 	)
+	stages: Optional[List[Stage]] = key(
+		None, "what is done with the specimen, in order; none: consolidation and shear, as the sections of these names say, which also have what a stage leaves out"
+	)
 	specimen: Specimen = section(Specimen, "the grains")
 	membrane: Membrane = section(Membrane, "the flexible membrane; particleRadius and placement also say the packing's radius")
 	wall: Wall = section(Wall, "the rigid wall, used with boundary: wall")
@@ -329,6 +333,7 @@ class Config:
 					raise ConfigError(f"specimen.{name}", path, "there is no such file", "correct the path")
 				setattr(config.specimen, name, path)
 		config._takeSizeOfBalls()
+		checkPlan(config)
 		config.measure.checkWith(config.specimen, config.shear)
 		return config
 

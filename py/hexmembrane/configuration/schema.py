@@ -177,6 +177,8 @@ def _number(path, value, kind, spec):
 def _value(path, value, annotation, spec):
 	"""``value`` checked against the key's type and range, and converted."""
 	kind, optional = _bare(annotation)
+	if dataclasses.is_dataclass(kind):
+		return build(kind, value, path)
 	if value is None:
 		if optional:
 			return None
@@ -283,7 +285,7 @@ def table(cls, path=""):
 			continue
 		spec = field.metadata["key"]
 		kind, optional = _bare(hints[field.name])
-		kind = {float: "number", int: "whole number", bool: "true/false", str: "text"}.get(kind, "list of numbers")
+		kind = "list of stages" if _entry(hints[field.name]) else {float: "number", int: "whole number", bool: "true/false", str: "text"}.get(kind, "list of numbers")
 		default = "none" if field.default is None else str(field.default).lower() if kind == "true/false" else str(field.default)
 		if isinstance(field.default, float):
 			default = f"{field.default:g}"
@@ -291,11 +293,19 @@ def table(cls, path=""):
 	return rows
 
 
+def _entry(annotation):
+	"""The class of the entries of a list of sections, None for any other type."""
+	kind = next(iter(typing.get_args(_bare(annotation)[0])), None)
+	return kind if dataclasses.is_dataclass(kind) else None
+
+
 def markdown(cls):
-	"""The tables of keys for the documentation, one Markdown table for the top level and one for each section."""
+	"""The tables of keys for the documentation, one Markdown table for the top level, one for each section and one for the entries of each list of sections."""
 	inner = {field.name for field in sections(cls)}
 	parts = [("top level", [row for row in table(cls) if row[0].split(".")[0] not in inner])]
 	parts += [(f"`{field.name}`: {field.metadata['doc']}", table(field.metadata["section"])) for field in sections(cls)]
+	entries = {name: _entry(hint) for name, hint in typing.get_type_hints(cls).items()}
+	parts += [(f"an entry of `{name}`", table(entry)) for name, entry in entries.items() if entry]
 	lines = []
 	for title, rows in parts:
 		lines += [f"### {title}", "", "| key | unit | default | range | purpose |", "| --- | --- | --- | --- | --- |"]

@@ -79,6 +79,12 @@ def soilStress(measured, inertia):
 	return {"q": axial - radial, "p": (axial + 2 * radial) / 3, **columns}
 
 
+def deviator(measured):
+	"""Deviatoric stress of the soil [Pa] from what ``SoilMeasure.stress()`` gives."""
+	stress = measured["whole"]
+	return stress[2, 2] - 0.5 * (stress[0, 0] + stress[1, 1])
+
+
 def unbalanced(ids, contactForce):
 	"""Mean resultant force on moving bodies over the mean contact force, 1 without contacts; as YADE's ``unbalancedForce``."""
 	return float(numpy.linalg.norm(BodyArrays.forces(ids), axis=1).mean()) / contactForce if contactForce > 0 else 1.0

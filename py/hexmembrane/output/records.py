@@ -9,7 +9,7 @@ from hexmembrane.output import tables
 from hexmembrane.output.tables import Column
 
 COLUMNS = (
-	Column("stage", "", "consolidation or shear", text=True),
+	Column("stage", "", "consolidation or shear; of a list of stages also unloading, hold, pressure, with a number from the second of a kind on: shear-2", text=True),
 	Column("step", "", "YADE's step, O.iter"),
 	Column("time", "s", "YADE's time, O.time"),
 	Column("axial_strain", "-", "eps1 = (h0 - h)/h0 with h the distance of the platens' faces; compression positive"),
@@ -158,6 +158,11 @@ def read(path):
 	:raises ValueError: no records file, or a row with a wrong number of cells.
 	"""
 	return tables.read(path, _TEXT, "records")
+
+
+def sheared(table):
+	"""Numbers of the rows that belong to no consolidation."""
+	return [i for i, stage in enumerate(table["stage"]) if not stage.startswith("consolidation")]
 
 
 def markdown():

@@ -17,7 +17,7 @@ from hexmembrane.run import checkpoints
 from hexmembrane.run.estimate import requireThreads
 from hexmembrane.run.lock import LockError
 from hexmembrane.run.manifest import CheckpointError
-from hexmembrane.run.pipeline import STAGES, run
+from hexmembrane.run.pipeline import run
 from hexmembrane.run.progress import tell
 
 
@@ -26,7 +26,7 @@ def _arguments(argv):
 	parser.add_argument("config", metavar="CONFIG", help="YAML file of the test, see examples/README.md")
 	parser.add_argument("--out", metavar="DIR", help="folder for all output (default: out/NAME OF CONFIG)")
 	parser.add_argument("--resume", action="store_true", help="go on from the last checkpoint in DIR")
-	parser.add_argument("--until", choices=STAGES, default="shear", help="stop after this stage")
+	parser.add_argument("--until", metavar="STAGE", help="stop after this stage: specimen, boundary, consolidation, shear, or what a list of stages has (default: all)")
 	parser.add_argument("--from", dest="start", metavar="STATE", help="shear a consolidated.yade.gz of another test")
 	parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
 	return parser.parse_args(argv)

@@ -12,6 +12,7 @@ import pathlib
 import shutil
 
 from hexmembrane.configuration import ConfigError
+from hexmembrane.configuration.stages import CONSOLIDATION, plan
 from hexmembrane.run.progress import clock
 from hexmembrane.scene import timestep
 
@@ -27,6 +28,8 @@ MOST_STEPS = 10**9
 MOST_THREADS = 4
 #: Least kn/(p d): grains overlap by about d over this number, and below it the specimen is no longer one of grains.
 LEAST_LEVEL = 10
+#: Strain of a way to a deviatoric stress, which is not known before.
+_UNKNOWN = 0.005
 #: The pressure's rise of a test that says none, in d sqrt(rho/p).
 RISE = 30
 
@@ -99,13 +102,14 @@ class Estimate:
 		"""
 		particles, particleRadius = _membrane(config, float(radii.min()))
 		step = _step(config, radii, particleRadius)
-		keys, shear = config.consolidation, config.shear
-		rise = (keys.rampTime or RISE * timestep.inertialTime(radii, config.specimen.density, keys.pressure)) / step
-		consolidation = min(2.5 * rise + config.output.consolidationSteps, keys.maxSteps)
-		sheared = (shear.strain + shear.rampStrain) * config.specimen.height / (shear.velocity * step)
+		stages = plan(config)
+		rises = [_changeTime(config, radii, stage) / step for stage in stages if stage.kind == CONSOLIDATION]
+		rise = max(rises)
+		consolidation = sum(min(2.5 * steps + config.output.consolidationSteps, config.consolidation.maxSteps) for steps in rises)
+		sheared = _seconds(config, radii, stages) / step
 		spheres = len(radii) + particles
-		frames = config.output.records / config.output.vtkEvery + 2 if config.output.vtkEvery else 0
-		rows = config.output.records + consolidation / config.output.consolidationSteps
+		frames = sum(stage.records for stage in stages) / config.output.vtkEvery + 2 * (len(stages) - 1) if config.output.vtkEvery else 0
+		rows = sum(stage.records for stage in stages) + consolidation / config.output.consolidationSteps
 		return cls(
 			grains=len(radii),
 			membrane=particles,
@@ -172,7 +176,7 @@ def requireStiffness(config, radii):
 	:param radii: of the grains [m].
 	:raises ConfigError: kn/(p d) is below LEAST_LEVEL.
 	"""
-	springs, pressure = config.specimen.springs, config.consolidation.pressure
+	springs, pressure = config.specimen.springs, max(stage.pressure for stage in plan(config))
 	level = timestep.levelOf(springs, radii, pressure)
 	if level < LEAST_LEVEL:
 		value, unit = (springs.kn, "N/m") if springs.direct else (springs.emod, "Pa")
@@ -188,10 +192,31 @@ def requireTravel(config):
 
 	:raises ConfigError: it is not.
 	"""
-	thickness, share = config.platens.thickness, {"top": 1.0, "both": 0.5}[config.shear.moving]
+	moving = [stage for stage in plan(config) if stage.straining]
+	thickness, share = config.platens.thickness, max((max(map(abs, stage.velocities)) / stage.speed for stage in moving), default=0.0)
 	travel = share * config.shear.strain * config.specimen.height
 	if thickness is not None and thickness <= travel:
 		raise ConfigError("platens.thickness", thickness, f"is no more than the {travel:.4g} m that a platen travels", f"more than {travel:.4g} m, or leave it out")
+
+
+def _changeTime(config, radii, stage):
+	"""Time of the stage's change of pressure, or of its standing platens [s]."""
+	return stage.time or RISE * timestep.inertialTime(radii, config.specimen.density, max(stage.pressure, stage.before))
+
+
+def _seconds(config, radii, stages):
+	"""Time in the test [s] of the stages that are no consolidation, nearly."""
+	total, at = 0.0, 0.0
+	for stage in stages:
+		if stage.kind == CONSOLIDATION:
+			at = 0.0
+		elif not stage.straining:
+			total += _changeTime(config, radii, stage)
+		else:
+			end = at + stage.direction * _UNKNOWN if stage.strain is None else stage.strain
+			total += (abs(end - at) + config.shear.rampStrain) * config.specimen.height / stage.speed
+			at = end
+	return total
 
 
 def _membrane(config, smallest):

@@ -10,6 +10,7 @@ from yade import O
 from hexmembrane import configuration
 from hexmembrane.configuration import Config, ConfigError, toDict
 from hexmembrane.configuration.schema import freeKeys
+from hexmembrane.configuration.stages import plan
 from hexmembrane.output.plots import plot
 from hexmembrane.run import checkpoints, estimate, progress, stages
 from hexmembrane.run.checkpoints import FolderError, Store
@@ -20,7 +21,8 @@ from hexmembrane.run.states import Image
 from hexmembrane.scene import accuracy, builder, specimen
 from hexmembrane.scene.handles import Scene
 
-STAGES = ("specimen", "boundary", "consolidation", "shear")
+#: What comes before a test's stages.
+BEFORE = ("specimen", "boundary")
 
 
 def _madeFolder(out):
@@ -113,20 +115,21 @@ def prepare(config, out, say):
 	return budget
 
 
-def run(config, out, resume=False, until="shear", start=None, quiet=False):
+def run(config, out, resume=False, until=None, start=None, quiet=False):
 	"""Run the stages of a test into a folder.
 
 	:param config: checked configuration.
 	:param out: folder, made if need be.
 	:param resume: go on from the folder's last checkpoint.
-	:param until: last stage to run, one of STAGES.
+	:param until: last stage to run: "specimen", "boundary" or the label of a stage; None: all.
 	:param start: a consolidated state (``consolidated.yade.gz`` of another test) to shear instead of making a specimen.
 	:param quiet: print nothing.
 	:returns: the :class:`hexmembrane.run.stages.TriaxialTest`, None when only the specimen was made.
 	:raises ConfigError, CheckpointError, LockError, FolderError, StageError, ValueError: each with the fix.
 	"""
-	if until not in STAGES:
-		raise ConfigError("--until", until, "is no stage", f"use {', '.join(STAGES)}")
+	known = (*BEFORE, *(planned.label for planned in plan(config)))
+	if until is not None and until not in known:
+		raise ConfigError("--until", until, "is no stage", f"use {', '.join(known)}")
 	if resume and start is not None:
 		raise ConfigError("--from", str(start), "a resumed test starts from its own checkpoint", "leave out one of --from and --resume")
 	if start is not None:
@@ -172,7 +175,7 @@ def _run(config, budget, settled, store, until, start, quiet, say, tell):
 		configuration.save(config, out / "config.yaml", budget=budget.asDict())
 		store.seal("config.yaml")
 		test = stages.TriaxialTest(config, out, quiet, store)
-		test.beginShear()
+		test.begin(next(k for k, planned in enumerate(test.plan) if planned.chain))
 		test.checkpoint()
 	else:
 		configuration.save(config, out / "config.yaml", budget=budget.asDict())
@@ -193,10 +196,8 @@ def _run(config, budget, settled, store, until, start, quiet, say, tell):
 
 
 def _stages(test, until, say):
-	if test.stage in ("generated", "consolidation"):
-		test.consolidate()
-	if until == "shear":
-		test.shear()
+	test.proceed(until)
+	if until is None or test.plan[[planned.label for planned in test.plan].index(until)].chain:
 		picture = test.out / checkpoints.PICTURE
 		plot(test.records.path, picture, test.config.title)
 		say(f"wrote {test.records.path}, {picture}" + (f" and {test.frames.folder}" if test.frames.written else ""))

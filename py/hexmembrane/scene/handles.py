@@ -99,6 +99,15 @@ class Scene:
 		"""Confining pressure asked for [Pa]."""
 		return self.radialServo.stress if self.radialServo else self.lateralBoundary.pressure
 
+	def consolidateAgain(self):
+		"""After a shear: the bottom platen stands, the top one holds its stress, and the membrane's pressure follows the soil's radial stress again."""
+		self.bottomDrive.mode, self.bottomDrive.velocity = "velocity", 0.0
+		self.topDrive.mode = "stress"
+		for drive in (self.bottomDrive, self.topDrive):
+			drive.rampTime = 0.0
+		if self.radialServo:
+			self.radialServo.dead = False
+
 	def holdRadialLoad(self):
 		"""Leave the membrane's pressure at what has brought the soil's radial stress to its target: from here on the transmitted pressure is held."""
 		if self.radialServo:
