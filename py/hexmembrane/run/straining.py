@@ -142,7 +142,12 @@ class Straining(_Sheared):
 	def _announce(self, progress):
 		test, planned = self.test, self.planned
 		if planned.q is None:
-			end, way = f"{100 * planned.strain:g} %", abs(planned.strain - test.stageStart["strain"])
+			end, way = f"{100 * planned.strain:g} %", planned.direction * (planned.strain - test.stageStart["strain"])
+			if way <= 0:
+				raise StageError(
+					f"{planned.path}.strain = {planned.strain:g}: {planned.kind} begins at {test.stageStart['strain']:.4g}, which is beyond it; the last checkpoint is in "
+					f"'{test.out}'; fix: another strain, or q before it"
+				)
 			steps = f"about {self._steps(way)} steps"
 			largest = math.floor(way * test.reference.height / (planned.speed * O.dt))
 			if test.rowCount == 0 and planned.records > largest:
