@@ -10,6 +10,7 @@ PACKAGE = pathlib.Path(__file__).parents[2] / "py" / "hexmembrane"
 #: A sub-package imports from itself and from those before it. This is the order of py/hexmembrane/README.md.
 ORDER = ("configuration", "scene", "measure", "output", "run")
 WITHOUT_YADE = (
+	"configuration.json_schema",
 	"configuration.pfc",
 	"configuration.specimen",
 	"configuration.stages",

@@ -29,10 +29,10 @@ SIZES = {
 
 
 class ConfigError(ValueError):
-	"""Bad configuration: the message names the key's path, its value, what is wrong and the fix."""
+	"""Bad configuration: the message names the key's path, its value, what is wrong and the fix; so do ``path``, ``value``, ``wrong`` and ``fix``."""
 
 	def __init__(self, path, value, wrong, fix):
-		self.path, self.value = path, value
+		self.path, self.value, self.wrong, self.fix = path, value, wrong, fix
 		super().__init__(f"{path} = {shown(value)}: {wrong}; fix: {fix}")
 
 

@@ -120,6 +120,15 @@ class Planned:
 		"""1 where the strain grows, -1 where it falls."""
 		return -1 if self.kind == UNLOADING else 1
 
+	def describe(self):
+		"""The stage in words."""
+		if not self.straining:
+			change = f"from {1e-3 * self.before:g} to {1e-3 * self.pressure:g} kPa" if self.pressure != self.before else f"at {1e-3 * self.pressure:g} kPa"
+			return change + (f" in {self.time:g} s" if self.time else "") + (f", {self.records} rows" if self.records else ", until rest")
+		if self.q is not None:
+			return f"to q = {1e-3 * self.q:g} kPa at {self.speed:g} m/s, rows at strain steps of {self.strainStep:.3g}"
+		return f"to {100 * self.strain:g} % at {self.speed:g} m/s, {self.records} rows"
+
 	@property
 	def state(self):
 		"""Name of the state at its end, without suffix."""

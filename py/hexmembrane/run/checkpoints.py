@@ -77,16 +77,22 @@ class Store:
 		:raises CheckpointError: its manifest is damaged or of another version.
 		"""
 		folder = pathlib.Path(folder)
+		cls.requireFree(folder)
 		if (folder / manifest.NAME).exists():
-			found = manifest.read(folder)
-			if found.checkpoints or found.files:
-				raise ConfigError("--out", str(folder), "holds a test already", "choose another folder, empty this one, or give --resume")
 			cls(folder).removeLeft()
-		else:
-			_refuseForeign(folder)
 		made = cls(folder)
 		made.write()
 		return made
+
+	@staticmethod
+	def requireFree(folder):
+		"""Check that a test may begin in a folder, which need not exist; nothing is changed. :raises ConfigError, CheckpointError: as :meth:`begin`."""
+		folder = pathlib.Path(folder)
+		if not (folder / manifest.NAME).exists():
+			return _refuseForeign(folder)
+		found = manifest.read(folder)
+		if found.checkpoints or found.files:
+			raise ConfigError("--out", str(folder), "holds a test already", "choose another folder, empty this one, or give --resume")
 
 	@classmethod
 	def existing(cls, folder):
