@@ -103,6 +103,15 @@ class Membrane:
 		openLow=True,
 		infinite=True,
 	)
+	maxFactor: float = key(
+		1.5,
+		"largest factor between the pressure on the membrane and the one asked for, and the inverse of the least: where the membrane carries more, the loops stand at it",
+		"",
+		low=1,
+		high=1000,
+		openLow=True,
+	)
+	servoMaxFactor: float = key(2.0, "largest such factor of the rows beside the platens, whose least is 0", "", low=1, high=1000, openLow=True)
 	REPLACED = {
 		"gain": "membrane.servoTime, a time constant in s; for gain: 0, .inf",
 		"pressureGain": "membrane.pressureTime, a time constant in s; for pressureGain: 0, .inf",
@@ -206,6 +215,9 @@ class Consolidation:
 		"s",
 		low=0,
 		openLow=True,
+	)
+	maxFactor: float = key(
+		1.5, "likewise of the loops that are closed on the soil: what a platen or the membrane presses with over the stress asked for", "", low=1, high=1000, openLow=True
 	)
 	unbalanced: float = key(1e-3, "limit of the unbalanced force ratio, membrane counted", "", low=0, high=0.1, openLow=True, free=True)
 	tolerance: Optional[float] = key(

@@ -130,6 +130,7 @@ def row(scene, grains, reference, stage, elapsed):
 		"volume": volume,
 		"membrane_area": boundary.pressedArea(bottom, top),
 		"bonds_broken": boundary.brokenBonds(),
+		"loops_saturated": len(scene.saturated()),
 		"elapsed": round(elapsed, 2),
 		**_energies(energies, reference.energies),
 		"pressure_axial": loads.axialPush,

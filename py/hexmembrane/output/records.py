@@ -88,6 +88,7 @@ COLUMNS = (
 	Column("volume", "m3", "V, enclosed by the inner surface between the platens' faces"),
 	Column("membrane_area", "m2", "area on which the pressure acts (group 3), 2 pi r h of a rigid wall"),
 	Column("bonds_broken", "", "broken membrane bonds, 0 with a rigid wall"),
+	Column("loops_saturated", "", "closed loops of pressure and stress that stand at a limit (maxFactor of membrane and consolidation), so that what is asked for does not arrive"),
 	Column("elapsed", "s", "wall clock spent on the test so far, set-up of a resumed run not counted"),
 	Column("energy_elastic", "J", "elastic energy of the contacts; this and all energies: nan with output.energy: false", True),
 	Column("energy_membrane", "J", "elastic energy of the membrane: bonds, bending, self-contact; 0 with a rigid wall", True),

@@ -52,6 +52,8 @@ class Consolidation(Stage):
 					raise StageError(self._restless(steps))
 				self._rampedChunk(rampTime, min(self.config.output.consolidationSteps, keys.maxSteps - steps))
 				test.row()
+				if O.time - test.stageStart["time"] >= rampTime:
+					test.tellSaturated(progress.say)
 				test.show(progress, self._done(rampTime))
 				checkTimeStep(self.config, test.scene, progress.say)
 				test.maybeCheckpoint()

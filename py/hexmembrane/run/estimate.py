@@ -11,6 +11,8 @@ import os
 import pathlib
 import shutil
 
+import numpy
+
 from hexmembrane.configuration import ConfigError
 from hexmembrane.configuration.stages import CONSOLIDATION, plan
 from hexmembrane.run.progress import clock
@@ -185,6 +187,29 @@ def requireStiffness(config, radii):
 			f"gives kn/(p d) = {level:.3g} at {pressure:g} Pa, so soft that grains pass through one another; {LEAST_LEVEL} is the least",
 			f"at least {value * LEAST_LEVEL / level:.3g} {unit}, {value * 300 / level:.3g} {unit} for small overlaps",
 		)  # fmt: skip
+
+
+def improbable(config, radii):
+	"""Lines about sizes and loads that a laboratory's test does not have: most often a slip of the unit.
+
+	:param radii: of the grains [m].
+	"""
+	keys, mean = config.specimen, float(numpy.mean(radii))
+	found = [
+		("specimen.radius", keys.radius, "m", 2e-3, 0.5),
+		("specimen.height", keys.height, "m", 4e-3, 2.0),
+		("the grains' mean radius", mean, "m", 1e-6, 0.05),
+		("specimen.density", keys.density, "kg/m3", 500.0, 12000.0),
+		("consolidation.pressure", config.consolidation.pressure, "Pa", 500.0, 1e8),
+		("shear.velocity", config.shear.velocity, "m/s", 0.0, 2.0),
+		("numerics.damping", config.numerics.damping, "", 0.0, 0.95),
+	]
+	return [
+		f"WARNING: {name} = {value:.4g} {unit}".rstrip() + f" is improbable, tests have {low:g} to {high:g}"
+		+ (f"; in mm it would be {value / 1000:g} m" if unit == "m" and value > high else "") + "; fix: see the unit, all are SI"
+		for name, value, unit, low, high in found
+		if not low <= value <= high
+	]  # fmt: skip
 
 
 def requireTravel(config):

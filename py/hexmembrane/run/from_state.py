@@ -111,11 +111,12 @@ def _facts(config, boundary):
 		return [*found, ("wall.damping", config.wall.damping, servo.damping), ("wall.tolerance", config.wall.tolerance, servo.tolerance)]
 	own, bonds = config.membrane, boundary.bonds
 	found += [(f"membrane.{name}", getattr(own, name), getattr(bonds, name)) for name in ("young", "thickness", "poisson", "tensionOnly", "tensileStrength", "shearStrength")]
-	found += [("membrane.facets", own.facets, boundary.facets is not None), ("membrane.surface", own.surface, boundary.pressureEngine.surface)]
+	found += [("membrane.maxFactor", own.maxFactor, boundary.pressureEngine.maxFactor), ("membrane.facets", own.facets, boundary.facets is not None), ("membrane.surface", own.surface, boundary.pressureEngine.surface)]
 	found += [("membrane.oRings", own.oRings, boundary.oRings.mode), ("membrane.placement", own.placement, boundary.membrane.placement)]
 	found += [(f"specimen.{name}", getattr(keys, name), getattr(boundary.membrane, f"specimen{name.title()}")) for name in ("radius", "height")]
 	found.append(("membrane.pressureTime", own.pressureTime, boundary.pressureEngine.timeConstant))
 	if boundary.radialServo:
+		found.append(("membrane.servoMaxFactor", own.servoMaxFactor, boundary.radialServo.maxFactor))
 		found += [("membrane.servoTime", own.servoTime, boundary.radialServo.timeConstant), ("membrane.areaRule", own.areaRule, boundary.radialServo.areaRule)]
 	return found
 

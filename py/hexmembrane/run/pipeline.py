@@ -95,6 +95,8 @@ def prepare(config, out, say):
 	if config.accuracy is not None:
 		chosen = accuracy.choose(config, radii)
 		say(f"accuracy {100 * config.accuracy:g} %: " + ", ".join(f"{key} = {value:g}" for key, value in chosen.items()))
+	for line in estimate.improbable(config, radii):
+		say(line)
 	estimate.requireStiffness(config, radii)
 	needs = estimate.Estimate.of(config, radii)
 	needs.require(config, estimate.Machine.here(out))

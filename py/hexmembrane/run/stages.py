@@ -49,7 +49,7 @@ class TriaxialTest:
 		self.store = Store(out) if store is None else store
 		self.scene, self.plan = Scene(), plan(config)
 		self.grains = rows.Grains.of(self.scene.grainIds())
-		self._earlierRows = 0
+		self._earlierRows, self._told = 0, set()
 		self.stage, self.rowCount, self.lastRow, self._earlier = "generated", 0, None, 0.0
 		if resumed is None:
 			self.stageStart, self.reference = {"step": O.iter, "time": O.time, "strain": 0.0}, rows.Reference.of(self.scene)
@@ -187,6 +187,19 @@ class TriaxialTest:
 		"""Write a VTK frame, where they are asked for."""
 		if self.config.output.vtkEvery:
 			self.frames.write(self.scene, self.grains, self.reference.radius, self.inside.grainArrays)
+
+	def tellSaturated(self, say):
+		"""Tell of each closed loop that has come to its limit, once. :param say: takes lines of the log."""
+		for loop, factor in self.scene.saturated().items():
+			if loop in self._told:
+				continue
+			self._told.add(loop)
+			row = self.lastRow
+			say(
+				f"WARNING: {loop} stands at its limit, {factor:.4g} times what is asked for, in {self.stage} at {100 * row['axial_strain']:.2f} %: "
+				f"{1e-3 * row['sigma3_transmitted_group3']:.4g} kPa of {1e-3 * row['sigma3_target']:.4g} kPa arrive; fix: a larger maxFactor, or a membrane that carries less "
+				"(young, thickness)"
+			)
 
 	def strain(self):
 		"""Axial strain since the last consolidation ended, compression positive."""

@@ -48,6 +48,7 @@ class _Sheared(Stage):
 			self._report(progress, watch)
 
 	def _warn(self, watch, progress):
+		self.test.tellSaturated(progress.say)
 		if said := watch.strayed(self.test.lastRow):
 			if self.config.shear.stopOutsideTolerance:
 				raise StageError(f"{said}; the last checkpoint is in '{self.test.out}'")

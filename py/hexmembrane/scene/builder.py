@@ -147,12 +147,12 @@ def _stressServos(config, packing, parts, bottom, top, drive, lateral):
 	measure = yade.SoilMeasure(bottomPlaten=bottom, topPlaten=top, **parts.around)
 	servos = []
 	if keys.axial == "soil":
-		servos.append(yade.SoilStressServo(measure=measure, drive=drive, stress=0.0, timeConstant=keys.stressTime or 10 * inertial))
+		servos.append(yade.SoilStressServo(measure=measure, drive=drive, stress=0.0, timeConstant=keys.stressTime or 10 * inertial, maxFactor=keys.maxFactor))
 	closed = config.membrane.pressureTime != math.inf
 	if config.boundary == "membrane" and (keys.radial or ("soil" if closed else "transmitted")) == "soil":
 		byName = {type(engine).__name__: engine for engine in lateral}
 		loads = {"pressure": byName["MembranePressure"], "beside": byName.get("MembraneRadialServo")}
-		servos.append(yade.SoilStressServo(measure=measure, stress=0.0, timeConstant=keys.stressTime or 20 * inertial, **loads))
+		servos.append(yade.SoilStressServo(measure=measure, stress=0.0, timeConstant=keys.stressTime or 20 * inertial, maxFactor=keys.maxFactor, **loads))
 	return servos
 
 

@@ -156,10 +156,10 @@ class FlexibleMembrane(LateralBoundary):
 			before = [
 				*sheet,
 				*facetEngines(keys, membrane, sheet[0]),
-				yade.MembranePressure(membrane=membrane, pressure=0.0, surface=keys.surface, timeConstant=pressureTime),
+				yade.MembranePressure(membrane=membrane, pressure=0.0, surface=keys.surface, timeConstant=pressureTime, maxFactor=keys.maxFactor),
 			]
 			if 2 in membrane.groups:
-				before.append(yade.MembraneRadialServo(membrane=membrane, pressure=0.0, areaRule=keys.areaRule, timeConstant=servoTime))
+				before.append(yade.MembraneRadialServo(membrane=membrane, pressure=0.0, areaRule=keys.areaRule, timeConstant=servoTime, maxFactor=keys.servoMaxFactor))
 			return before, [yade.MembraneORings(membrane=membrane, mode=keys.oRings, bottomPlaten=bottom, topPlaten=top)]
 
 		return BoundaryParts(
@@ -251,6 +251,11 @@ class FlexibleMembrane(LateralBoundary):
 
 	def transmittedPressure(self, group):
 		return self.membrane.transmittedPressure(3 if group == 2 and not self.radialServo else group)
+
+	def saturated(self):
+		loops = {"maxFactor": ("main body", self.pressureEngine), "servoMaxFactor": ("rows beside the platens", self.radialServo)}
+		working = {key: (part, loop) for key, (part, loop) in loops.items() if loop and loop.saturated}
+		return {f"membrane.{key} = {loop.maxFactor:g}: the pressure of the membrane's {part}": loop.factor for key, (part, loop) in working.items()}
 
 	def brokenBonds(self):
 		return self.bonds.brokenCount
