@@ -7,6 +7,7 @@
 #include "kernels/membrane/MembraneTension.hpp"
 #include "kernels/membrane/PressureForce.hpp"
 #include "kernels/membrane/RadialForce.hpp"
+#include "kernels/membrane/TubeInside.hpp"
 
 #include <core/InteractionContainer.hpp>
 #include <pkg/common/NormShearPhys.hpp>
@@ -192,7 +193,7 @@ hexmembrane::TubeSlab HexMembrane::slab(const string& surface, const vector<Vect
 	constexpr Real inf = std::numeric_limits<Real>::infinity();
 	const vector<Vector3r> x = surfacePoints(surface, centres);
 	const Real low = math::isnan(zBottom) ? -inf : zBottom, high = math::isnan(zTop) ? inf : zTop;
-	return named("HexMembrane", {{"zBottom", argument}}, [&] { return hexmembrane::measureTube(triangleList(), x, low, high); });
+	return named("HexMembrane", {{"zBottom", argument}}, [&] { return hexmembrane::measureTube(triangleList(), x, {low, high})[0]; });
 }
 
 Real HexMembrane::surfaceArea(const string& surface, Real zBottom, Real zTop) const
@@ -207,11 +208,23 @@ Real HexMembrane::enclosedVolume(Real zBottom, Real zTop, const string& surface)
 
 vector<Real> HexMembrane::volumesBetween(const vector<Vector3r>& x, const vector<Real>& heights) const
 {
-	const vector<Vector3r> inner = surfacePoints("inner", x);
-	const auto triangles = triangleList();
 	vector<Real> volumes;
-	for (size_t k = 1; k < heights.size(); ++k) volumes.push_back(hexmembrane::measureTube(triangles, inner, heights[k - 1], heights[k]).volume);
+	for (const auto& slab : hexmembrane::measureTube(triangleList(), surfacePoints("inner", x), heights)) volumes.push_back(slab.volume);
 	return volumes;
+}
+
+vector<Body::id_t> HexMembrane::outside(const vector<Body::id_t>& bodies) const
+{
+	const vector<Vector3r> x = positions_get();
+	const auto triangles = triangleList();
+	const hexmembrane::TubeInside tube(perRing, triangles, x);
+	vector<Body::id_t> found;
+	for (Body::id_t id : bodies) {
+		const Body* body = livingBody(*currentScene().bodies, id);
+		if (!body) hexmembrane::reject("HexMembrane.outside: ids", int(id), "there is no such body", "ids of bodies of the scene");
+		if (!tube.inside(body->state->pos)) found.push_back(id);
+	}
+	return found;
 }
 
 Real HexMembrane::meanRadius(Real zBottom, Real zTop, const string& surface) const
@@ -298,6 +311,16 @@ Real HexMembrane::transmittedPressure(int group) const
 {
 	const string who = "HexMembrane.transmittedPressure";
 	return groupPressure(group, positions_get(), pressingNow(who), who);
+}
+
+boost::python::dict HexMembrane::transmittedByGroup() const
+{
+	const string who = "HexMembrane.transmittedByGroup";
+	const vector<Vector3r> forces = pressingNow(who), x = positions_get();
+	boost::python::dict pressures;
+	for (int group : {0, 2, 3})
+		if (group != 2 || platenRows > 0) pressures[group] = groupPressure(group, x, forces, who);
+	return pressures;
 }
 
 vector<Real> HexMembrane::transmittedByRing() const

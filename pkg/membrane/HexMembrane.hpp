@@ -39,6 +39,8 @@ public:
 
 	//! Mean pressure (Pa) that the particles of a group (0: all) press on bodies which are not of the membrane.
 	Real transmittedPressure(int group) const;
+	//! The same of all groups at once: 0, 2 (where there are rows beside the platens) and 3.
+	boost::python::dict transmittedByGroup() const;
 	//! The same ring by ring (Pa).
 	vector<Real> transmittedByRing() const;
 	//! Sum of the normal contact forces of all that is not membrane on each particle (N), from O.interactions and the engines.
@@ -62,6 +64,7 @@ public:
 	Real surfaceArea(const string& surface, Real zBottom, Real zTop) const;
 	Real enclosedVolume(Real zBottom, Real zTop, const string& surface) const;
 	Real meanRadius(Real zBottom, Real zTop, const string& surface) const;
+	vector<Body::id_t> outside(const vector<Body::id_t>& bodies) const;
 
 private:
 	hexmembrane::HexLatticeSpec spec() const;
@@ -112,7 +115,9 @@ private:
 		.def("surfaceArea",&HexMembrane::surfaceArea,(boost::python::arg("surface")="inner",boost::python::arg("zBottom")=NaN,boost::python::arg("zTop")=NaN),"Present area [m²] of the 'inner' surface or of that through the 'centre's, between two heights (NaN: to the end rings).")
 		.def("enclosedVolume",&HexMembrane::enclosedVolume,(boost::python::arg("zBottom")=NaN,boost::python::arg("zTop")=NaN,boost::python::arg("surface")="inner"),"Present volume [m³] enclosed by the membrane's 'inner' (or 'centre') surface and horizontal planes at two heights, the platens' faces (NaN: at the end rings).")
 		.def("meanRadius",&HexMembrane::meanRadius,(boost::python::arg("zBottom")=NaN,boost::python::arg("zTop")=NaN,boost::python::arg("surface")="inner"),"Present mean distance [m] of the particles from their ring's centroid, rings between two heights (for Eq. 6); 'inner': less the sphere radius.")
+		.def("outside",&HexMembrane::outside,(boost::python::arg("ids")),"Those of the bodies whose centres are outside the surface through the membrane's centres, for bodies between its ends.")
 		.def("transmittedPressure",&HexMembrane::transmittedPressure,(boost::python::arg("group")=0),"Pressure [Pa] that arrives: radial part (towards the centroid of the ring) of the normal contact forces on all other bodies (grains, platens' sides), over the present smooth inner area of the particles of a group (0: all of groups 2 and 3), $2\\pi(r-R)$ a ring times half the distance of its neighbours. Smooth and radial, since a membrane that sags between grains has more surface than the cylinder that the pressure is asked for (8 % more for R/r = 0.8 at 100 kPa). Positive presses inwards. From the contacts of the last step.")
+		.def("transmittedByGroup",&HexMembrane::transmittedByGroup,"The same for all groups at once, in the time of one: a dict of group (0, 2 where there are :yref:`platenRows<HexMembrane.platenRows>`, 3) to pressure [Pa].")
 		.def("transmittedByRing",&HexMembrane::transmittedByRing,"The same for each ring from the bottom, O-ring rows included: a list of :yref:`rings<HexMembrane.rings>` pressures [Pa]. An end ring counts half the distance to its one neighbour twice.")
 	);
 	// clang-format on

@@ -82,11 +82,11 @@ Real MembraneBending::elasticEnergy() const
 	return kernel->energy();
 }
 
-Real MembraneBending::axialTension(Real z) const
+vector<Real> MembraneBending::axialTension(const vector<Real>& heights) const
 {
 	requireStepped("axialTension");
-	hexmembrane::requireFinite("MembraneBending.axialTension: z", z, "m");
-	return hexmembrane::axialPull(membrane->positions_get(), kernel->force.vectors(), z);
+	for (Real z : heights) hexmembrane::requireFinite("MembraneBending.axialTension: heights", z, "m");
+	return hexmembrane::axialPull(membrane->positions_get(), kernel->force.vectors(), heights);
 }
 
 Real MembraneBending::radialShare(int group) const

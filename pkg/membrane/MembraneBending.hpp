@@ -21,7 +21,7 @@ public:
 	Real elasticEnergy() const;
 	Real criticalTimeStep() const;
 	Real springStiffness() const;
-	Real axialTension(Real z) const;
+	vector<Real> axialTension(const vector<Real>& heights) const;
 	Real radialShare(int group) const;
 
 	void prepare() override;
@@ -60,7 +60,7 @@ private:
 		,/*ctor*/,
 		.add_property("springStiffness",&MembraneBending::springStiffness,"$k_b=8\\sqrt3D/(2R)^2$ [N/m].")
 		.def("elasticEnergy",&MembraneBending::elasticEnergy,"Elastic energy of the bending [J] at the last step.")
-		.def("axialTension",&MembraneBending::axialTension,(boost::python::arg("z")),"Axial force [N] that the bending carries through the horizontal plane at the height z [m], at the last step, tension positive: minus the axial forces on the particles that are not below it now; adds to :yref:`MembraneBonds.axialTension`.")
+		.def("axialTension",&MembraneBending::axialTension,(boost::python::arg("heights")),"Axial force [N] that the bending carries through the horizontal plane at each of the heights [m], at the last step, tension positive: minus the axial forces on the particles that are not below it now; adds to :yref:`MembraneBonds.axialTension`.")
 		.def("radialShare",&MembraneBending::radialShare,(boost::python::arg("group")=3),"Pressure [Pa] that the bending adds to what reaches the soil at a group (0: all of groups 2 and 3), inwards positive: the forces of the last step over the present area; adds to :yref:`MembraneBonds.radialShare`.")
 		.def("criticalTimeStep",&MembraneBending::criticalTimeStep,"Critical time step [s] of the bending alone, $2/\\omega$ with $\\omega^2=2.25k_b/m$; inf without stiffness. A lower bound; that of bending and bonds together has at least the sum of both $\\omega^2$.")
 	);

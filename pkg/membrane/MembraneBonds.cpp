@@ -147,13 +147,13 @@ vector<Real> MembraneBonds::normalForces()
 	return forces;
 }
 
-Real MembraneBonds::axialTension(Real z)
+vector<Real> MembraneBonds::axialTension(const vector<Real>& heights)
 {
 	requireStepped("axialTension");
-	hexmembrane::requireFinite("MembraneBonds.axialTension: z", z, "m");
+	for (Real z : heights) hexmembrane::requireFinite("MembraneBonds.axialTension: heights", z, "m");
 	const AtLastStep then(kernel->position, stepped);
 	const auto onFirst = hexmembrane::bondForces(*kernel, state());
-	return hexmembrane::axialTension(membrane->stencil(), kernel->position.vectors(), onFirst, z);
+	return hexmembrane::axialTension(membrane->stencil(), kernel->position.vectors(), onFirst, heights);
 }
 
 Real MembraneBonds::radialShare(int group)

@@ -25,7 +25,7 @@ public:
 	int brokenCount() const;
 	Real normalStiffness() const { return law().kn; }
 	Real shearStiffness() const { return law().ks; }
-	Real axialTension(Real z);
+	vector<Real> axialTension(const vector<Real>& heights);
 	Real radialShare(int group);
 
 	void prepare() override;
@@ -77,7 +77,7 @@ private:
 		,/*ctor*/,
 		.def("elasticEnergy",&MembraneBonds::elasticEnergy,"Elastic energy of all bonds [J] at the last step.")
 		.def("normalForces",&MembraneBonds::normalForces,"Normal force of each bond at the last step [N], tension positive, in the order of :yref:`HexMembrane.bonds`.")
-		.def("axialTension",&MembraneBonds::axialTension,(boost::python::arg("z")),"Axial force [N] that the membrane carries through the horizontal plane at the height z [m], at the last step: the axial parts of the normal and shear forces of all bonds that cross it, tension positive. A thin tube: $2\\pi r N_z$. Broken bonds count with what they still carry.")
+		.def("axialTension",&MembraneBonds::axialTension,(boost::python::arg("heights")),"Axial force [N] that the membrane carries through the horizontal plane at each of the heights [m], at the last step: the axial parts of the normal and shear forces of all bonds that cross it, tension positive. A thin tube: $2\\pi r N_z$. Broken bonds count with what they still carry.")
 		.def("radialShare",&MembraneBonds::radialShare,(boost::python::arg("group")=3),"Pressure [Pa] that the membrane's own forces add to what reaches the soil at a group (0: all of groups 2 and 3), at the last step: the sum of the bonds' forces on its particles towards their ring's axis, over the same smooth inner area as :yref:`HexMembrane.transmittedPressure`. Positive presses inwards; a thin tube: $N_\\theta/r$ with $r$ the inner radius. At rest the transmitted pressure is the applied one plus this.")
 		.def("criticalTimeStep",&MembraneBonds::criticalTimeStep,"Critical time step [s] of the bonds alone, $2/\\omega$ with $\\omega^2=\\max(6k_n+2k_s,\\,30k_s)/m$: exact for the free flat lattice, where the second term is all particles spinning alike, and below the tube's own. Contacts make it shorter, and so does a strain $\\epsilon$ of the bonds, which adds some $2k_n\\epsilon$ to the first term and multiplies the second by $(1+\\epsilon)^2$.")
 		.add_property("normalStiffness",&MembraneBonds::normalStiffness,"Normal stiffness of a bond [N/m], as given or from young, thickness and poisson.")

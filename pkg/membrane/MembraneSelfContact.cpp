@@ -67,11 +67,11 @@ vector<Vector2i> MembraneSelfContact::pairs() const
 
 Real MembraneSelfContact::elasticEnergy() const { return computed("elasticEnergy").energy(); }
 
-Real MembraneSelfContact::axialTension(Real z) const
+vector<Real> MembraneSelfContact::axialTension(const vector<Real>& heights) const
 {
 	const auto& force = computed("axialTension").force;
-	hexmembrane::requireFinite("MembraneSelfContact.axialTension: z", z, "m");
-	return hexmembrane::axialPull(membrane->positions_get(), force.vectors(), z);
+	for (Real z : heights) hexmembrane::requireFinite("MembraneSelfContact.axialTension: heights", z, "m");
+	return hexmembrane::axialPull(membrane->positions_get(), force.vectors(), heights);
 }
 
 Real MembraneSelfContact::radialShare(int group) const

@@ -21,7 +21,7 @@ public:
 	Real normalStiffness() const;
 	Real elasticEnergy() const;
 	Real criticalTimeStep() const;
-	Real axialTension(Real z) const;
+	vector<Real> axialTension(const vector<Real>& heights) const;
 	Real radialShare(int group) const;
 	vector<Vector2i> pairs() const;
 	long listsMade() const { return kernel ? kernel->listsMade() : 0; }
@@ -57,7 +57,7 @@ private:
 		.add_property("pairs",&MembraneSelfContact::pairs,"Pairs of particles that touched at the last step, as indices into :yref:`HexMembrane.ids`, sorted.")
 		.add_property("listsMade",&MembraneSelfContact::listsMade,"Times that the list of near pairs was made since the engine was made or loaded.")
 		.def("elasticEnergy",&MembraneSelfContact::elasticEnergy,"Elastic energy of all contacts [J] at the last step.")
-		.def("axialTension",&MembraneSelfContact::axialTension,(boost::python::arg("z")),"Axial force [N] that the contacts carry through the horizontal plane at the height z [m], at the last step, tension positive: minus the axial forces on the particles that are not below it now; adds to :yref:`MembraneBonds.axialTension`.")
+		.def("axialTension",&MembraneSelfContact::axialTension,(boost::python::arg("heights")),"Axial force [N] that the contacts carry through the horizontal plane at each of the heights [m], at the last step, tension positive: minus the axial forces on the particles that are not below it now; adds to :yref:`MembraneBonds.axialTension`.")
 		.def("radialShare",&MembraneSelfContact::radialShare,(boost::python::arg("group")=3),"Pressure [Pa] that the contacts add to what reaches the soil at a group (0: all of groups 2 and 3), inwards positive: the forces of the last step over the present area; adds to :yref:`MembraneBonds.radialShare`.")
 		.def("criticalTimeStep",&MembraneSelfContact::criticalTimeStep,"Critical time step [s] of the contacts of the last step alone, $2/\\omega$ with $\\omega^2\\leq2ck_n/m$ and $c$ the most contacts of one particle: a lower bound. inf while nothing touches; a fold that forms later shortens it.")
 	);

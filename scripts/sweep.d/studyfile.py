@@ -60,9 +60,9 @@ def load(path):
 	for name in given:
 		if name not in KEYS:
 			raise ConfigError(f"study.{name}", given[name], "unknown key", f"{_guess(name, KEYS)}known keys are {', '.join(KEYS)}")
-	base = _base(given, path.parent)
+	base = baseOf(given, path.parent)
 	axes = _axes(given.get("axes"), base, path.parent)
-	seeds = _seeds(given.get("seeds"), base)
+	seeds = seedsOf(given.get("seeds"), base)
 	runs = []
 	for number, (values, seed) in enumerate(itertools.product(_combined(axes, given.get("combine", "product")), seeds), 1):
 		runs.append(_run(number, values, seed, base))
@@ -73,7 +73,7 @@ def load(path):
 		raise ConfigError("stages", None, "a study's tests have one consolidation and one shear", "take stages out of its base and changes")
 	if len(seeds) > 1 and all(stageOf(SEED, run.config) is None for run in runs):
 		raise ConfigError("seeds", seeds, "change nothing, the packing is a file", "take them out, or give specimen.gradation")
-	return Study(_title(given, path), list(axes), runs, _attempts(given.get("attempts", 2)), given)
+	return Study(titleOf(given, path), list(axes), runs, attemptsOf(given.get("attempts", 2)), given)
 
 
 def _guess(name, known):
@@ -81,14 +81,14 @@ def _guess(name, known):
 	return f"did you mean '{close[0]}'? " if close else ""
 
 
-def _title(given, path):
+def titleOf(given, path):
 	title = given.get("title", path.name.removesuffix(".yaml"))
 	if not isinstance(title, str):
 		raise ConfigError("study.title", title, "is not text", "give a name")
 	return title
 
 
-def _base(given, folder):
+def baseOf(given, folder):
 	base = given.get("base")
 	if isinstance(base, str):
 		config = configuration.load(folder / base)
@@ -99,10 +99,10 @@ def _base(given, folder):
 	changes = given.get("changes", {})
 	if not isinstance(changes, dict):
 		raise ConfigError("study.changes", changes, "is not a mapping of keys", "write 'key: value' lines")
-	return derived(config, _resolved(changes, folder))
+	return derived(config, resolved(changes, folder))
 
 
-def _resolved(changes, folder):
+def resolved(changes, folder):
 	"""Changes whose files are named by whole paths."""
 	specimen = changes.get("specimen")
 	if not isinstance(specimen, dict):
@@ -135,7 +135,7 @@ def _axes(axes, base, folder):
 			raise ConfigError(f"axes.{key}", values, "is what means are taken over", "give it as seeds")
 		if not isinstance(values, list) or not values or any(isinstance(value, (list, dict)) for value in values):
 			raise ConfigError(f"axes.{key}", values, "is not a list of values", "write [first, second, ...]")
-	return {key: [flat(_resolved(nested({key: value}), folder))[key] for value in values] for key, values in axes.items()}
+	return {key: [flat(resolved(nested({key: value}), folder))[key] for value in values] for key, values in axes.items()}
 
 
 def _combined(axes, how):
@@ -148,7 +148,7 @@ def _combined(axes, how):
 	return [dict(zip(axes, row)) for row in rows]
 
 
-def _seeds(seeds, base):
+def seedsOf(seeds, base):
 	if seeds is None:
 		return [base.specimen.seed]
 	whole = isinstance(seeds, int) and not isinstance(seeds, bool)
@@ -159,7 +159,7 @@ def _seeds(seeds, base):
 	return seeds
 
 
-def _attempts(attempts):
+def attemptsOf(attempts):
 	if isinstance(attempts, bool) or not isinstance(attempts, int) or not 1 <= attempts <= MOST_ATTEMPTS:
 		raise ConfigError("study.attempts", attempts, f"is not a whole number from 1 to {MOST_ATTEMPTS}", "give one")
 	return attempts

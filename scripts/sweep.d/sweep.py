@@ -117,17 +117,17 @@ def _run(plan, folder, arguments):
 				_end(child)
 
 
-def _lock(folder):
+def lock(folder):
 	"""Hold the study's folder; the file stays open as long as this process lives."""
 	file = open(folder / "lock", "wb")
 	try:
 		fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 	except BlockingIOError:
-		raise ConfigError("--out", str(folder), "another scripts/sweep works there", "wait for it, or choose another folder") from None
+		raise ConfigError("--out", str(folder), "another run works there", "wait for it, or choose another folder") from None
 	return file
 
 
-def _forget(plan, folder):
+def forget(plan, folder):
 	"""Take away the results of failed stages."""
 	for name in plan["jobs"]:
 		if (found := plans.result(folder, name)) and found["status"] == "failed":
@@ -146,19 +146,24 @@ def _tell(table, folder, say):
 	return 1 if odd else 0
 
 
+def advance(plan, inputs, folder, arguments, say):
+	"""Write a plan into its folder, whose lock the caller holds, and run what has not been run; nothing is gathered."""
+	plans.write(plan, inputs, folder)
+	if announce(plan, folder, arguments.cores, say):
+		_run(plan, folder, arguments)
+
+
 def execute(plan, inputs, folder, arguments, say):
 	"""Run a plan in its folder and gather; the exit code: 0, 1 when a run is not done."""
 	folder.mkdir(parents=True, exist_ok=True)
-	with _lock(folder):
-		plans.write(plan, inputs, folder)
+	with lock(folder):
 		if arguments.again:
-			_forget(plan, folder)
+			forget(plan, folder)
 		if results.upToDate(plan, folder):
 			say("nothing to do")
 			with open(folder / results.RUNS, encoding="utf-8", newline="") as file:
 				return _tell(list(results.csv.reader(file)), folder, say)
-		if announce(plan, folder, arguments.cores, say):
-			_run(plan, folder, arguments)
+		advance(plan, inputs, folder, arguments, say)
 		table = results.gather(plan, folder)
 		archive.write(plan, folder)
 		return _tell(table, folder, say)

@@ -86,7 +86,7 @@ def test_heldEndsGiveHoopStrainAlone(O, tier):
 	hoop = rows(m)[0] / r0 - 1
 	assert hoop[middle(m)].mean() == pytest.approx(strain, rel=5e-3)
 	mean = (0.5 * (hoop[1:] + hoop[:-1]) * np.diff(z0)).sum() / (z0[-1] - z0[0])  # less than in the middle: the ends are held
-	pull = bonds.axialTension(HEIGHT / 2) / (2 * math.pi * m.centreRadius)
+	pull = bonds.axialTension([HEIGHT / 2])[0] / (2 * math.pi * m.centreRadius)
 	assert pull == pytest.approx(poisson / (1 - poisson**2) * YOUNG * THICKNESS * mean, rel=5e-3)
 
 

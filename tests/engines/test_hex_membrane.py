@@ -69,8 +69,19 @@ def test_transmittedPressureOfOneContact(O, tier):
 	assert m.transmittedPressure(2) == 0
 	rings = np.array(m.transmittedByRing())
 	assert rings[m.rings // 2] == pytest.approx(m.transmittedPressure() * rows, rel=1e-9) and np.count_nonzero(rings) == 1
+	assert m.transmittedByGroup() == {group: m.transmittedPressure(group) for group in (0, 2, 3)}
 	with pytest.raises(ValueError, match="group"):
 		m.transmittedPressure(1)
+
+
+def test_outside(O, tier):
+	"""Bodies on both sides of the surface through the membrane's centres; a body that is not there is named."""
+	m = makeMembrane()
+	x = O.bodies[m.ids[m.perRing * (m.rings // 2)]].state.pos
+	grains = [sphere(x + way * inward(x) * m.sphereRadius, 1e-4, fixed=True) for way in (-2, -0.5, 0.5, 2)]
+	assert m.outside(grains) == grains[:2]
+	with pytest.raises(ValueError, match="HexMembrane.outside: ids = 99999999"):
+		m.outside([*grains, 99999999])
 
 
 BAD = [

@@ -174,9 +174,9 @@ def test_ownLoads(O, tier):
 	z = positions(m)[:, 2]
 	force = forcesOn(m.ids)
 	middle = 0.5 * (z.min() + z.max())
-	assert bending.axialTension(middle) == pytest.approx(force[z < middle, 2].sum(), rel=1e-9)
-	assert abs(bending.axialTension(z.min() - 1)) < 1e-12 * np.abs(force).max() * len(z)
-	assert bending.axialTension(z.max() + 1) == 0
+	assert bending.axialTension([middle])[0] == pytest.approx(force[z < middle, 2].sum(), rel=1e-9)
+	assert abs(bending.axialTension([z.min() - 1])[0]) < 1e-12 * np.abs(force).max() * len(z)
+	assert bending.axialTension([z.max() + 1])[0] == 0
 	inwards = bending.radialShare(3)
 	bending.stiffness = 2 * D
 	O.step()

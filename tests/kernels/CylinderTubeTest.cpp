@@ -23,7 +23,7 @@ TEST(CylinderTube, enclosesTheCylindersVolume)
 		for (int rows : {1, 4, 23}) {
 			const Enclosure tube = cylinderTube(axis, radius, low, high, {around, rows});
 			const double expected = M_PI * radius * radius * (high - low);
-			EXPECT_NEAR(measureTube(tube.triangles, tube.inner, low, high).volume, expected, 1e-13 * expected) << around << " " << rows;
+			EXPECT_NEAR(measureTube(tube.triangles, tube.inner, {low, high})[0].volume, expected, 1e-13 * expected) << around << " " << rows;
 			const double most = 3 * radius / (around * around);
 			for (const auto& t : tube.triangles) {
 				Vec3 middle = Vec3::Zero();

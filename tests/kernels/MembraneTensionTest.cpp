@@ -51,7 +51,7 @@ struct Strained {
 		}
 	}
 
-	double tension(double z) { return axialTension(tube, x, bondForces(bonds, memory.state()), z); }
+	double tension(double z) { return axialTension(tube, x, bondForces(bonds, memory.state()), {z})[0]; }
 	/// Pull of the middle ring over its area.
 	double pressure() const
 	{

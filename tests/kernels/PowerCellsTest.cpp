@@ -38,7 +38,7 @@ Enclosure tubeRound(const HexLattice& tube, double dent)
 	return made;
 }
 
-double enclosed(const Enclosure& e) { return measureTube(e.triangles, e.inner, e.bottom, e.top).volume; }
+double enclosed(const Enclosure& e) { return measureTube(e.triangles, e.inner, {e.bottom, e.top})[0].volume; }
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.); }
 

@@ -29,10 +29,10 @@ TEST(SurfaceMeasure, prismByClosedForm)
 	const int n = 17;
 	const double r = 0.02, h = 0.08, section = 0.5 * n * r * r * std::sin(2 * M_PI / n), side = 2 * r * std::sin(M_PI / n);
 	const auto p = prism(n, r, h);
-	const auto whole = measureTube(p.triangles, p.positions, -inf, inf);
+	const auto whole = measureTube(p.triangles, p.positions, {-inf, inf})[0];
 	EXPECT_NEAR(whole.volume / (section * h), 1, 1e-12);
 	EXPECT_NEAR(whole.area / (n * side * h), 1, 1e-12);
-	const auto part = measureTube(p.triangles, p.positions, 0.013, 0.047);
+	const auto part = measureTube(p.triangles, p.positions, {0.013, 0.047})[0];
 	EXPECT_NEAR(part.volume / (section * 0.034), 1, 1e-12);
 	EXPECT_NEAR(part.area / (n * side * 0.034), 1, 1e-12);
 }
@@ -40,18 +40,27 @@ TEST(SurfaceMeasure, prismByClosedForm)
 TEST(SurfaceMeasure, shiftedTubeHasTheSameVolume)
 {
 	auto p = prism(17, 0.02, 0.08);
-	const auto before = measureTube(p.triangles, p.positions, 0.01, 0.07);
+	const auto before = measureTube(p.triangles, p.positions, {0.01, 0.07})[0];
 	for (auto& x : p.positions) x += Vec3(0.5, -0.3, 0);
-	EXPECT_NEAR(measureTube(p.triangles, p.positions, 0.01, 0.07).volume / before.volume, 1, 1e-12);
+	EXPECT_NEAR(measureTube(p.triangles, p.positions, {0.01, 0.07})[0].volume / before.volume, 1, 1e-12);
 }
 
 TEST(SurfaceMeasure, slabsAddUp)
 {
 	HexLattice tube = support::smallTube();
 	support::shake(tube.positions, 5e-4, 4);
-	const double volume = measureTube(tube.triangles, tube.positions, 0.002, 0.028).volume;
+	const double volume = measureTube(tube.triangles, tube.positions, {0.002, 0.028})[0].volume;
+	std::vector<double> heights;
+	for (int i = 0; i <= 13; ++i) heights.push_back(0.002 + i * 0.002);
+	const auto slabs = measureTube(tube.triangles, tube.positions, heights);
+	ASSERT_EQ(slabs.size(), 13u);
 	double sum = 0;
-	for (int i = 0; i < 13; ++i) sum += measureTube(tube.triangles, tube.positions, 0.002 + i * 0.002, 0.004 + i * 0.002).volume;
+	for (int i = 0; i < 13; ++i) {
+		sum += slabs[i].volume;
+		const auto alone = measureTube(tube.triangles, tube.positions, {heights[i], heights[i + 1]})[0];
+		EXPECT_EQ(slabs[i].volume, alone.volume);
+		EXPECT_EQ(slabs[i].area, alone.area);
+	}
 	EXPECT_NEAR(sum / volume, 1, 1e-12);
 }
 
@@ -62,7 +71,7 @@ TEST(SurfaceMeasure, tubeWithPlaneEndsEqualsTheClosedSurface)
 	auto inside = std::vector<Vec3>(tube.positions.begin() + tube.perRing, tube.positions.end() - tube.perRing);
 	support::shake(inside, 5e-4, 8);
 	std::copy(inside.begin(), inside.end(), tube.positions.begin() + tube.perRing);
-	const double open = measureTube(tube.triangles, tube.positions, -inf, inf).volume;
+	const double open = measureTube(tube.triangles, tube.positions, {-inf, inf})[0].volume;
 	support::closeTube(tube);
 	EXPECT_NEAR(open / closedVolume(tube.triangles, tube.positions), 1, 1e-12);
 }
@@ -70,6 +79,6 @@ TEST(SurfaceMeasure, tubeWithPlaneEndsEqualsTheClosedSurface)
 TEST(SurfaceMeasure, wrongOrderOfPlanesIsNamed)
 {
 	const auto p = prism(6, 1, 1);
-	EXPECT_COMPLAINT(measureTube(p.triangles, p.positions, 1, 0), "zBottom");
-	EXPECT_COMPLAINT(measureTube(p.triangles, p.positions, std::nan(""), 0), "zBottom");
+	EXPECT_COMPLAINT(measureTube(p.triangles, p.positions, std::vector<double>({1, 0})), "zBottom");
+	EXPECT_COMPLAINT(measureTube(p.triangles, p.positions, std::vector<double>({0, 1, std::nan("")})), "zBottom");
 }

@@ -8,7 +8,7 @@ import pytest
 
 PACKAGE = pathlib.Path(__file__).parents[2] / "py" / "hexmembrane"
 #: A sub-package imports from itself and from those before it. This is the order of py/hexmembrane/README.md.
-ORDER = ("configuration", "scene", "measure", "output", "run")
+ORDER = ("configuration", "scene", "measure", "output", "laboratory", "run")
 WITHOUT_YADE = (
 	"configuration.json_schema",
 	"configuration.pfc",
@@ -36,6 +36,8 @@ WITHOUT_YADE = (
 	"output.records",
 	"output.vtk",
 	"output.plots",
+	"laboratory.curve",
+	"laboratory.misfit",
 	"run.checkpoints",
 	"run.estimate",
 	"run.pressure_watch",

@@ -23,28 +23,31 @@ std::vector<Vec3> bondForces(const BondForce& bonds, const BondState& state)
 	return onFirst;
 }
 
-double axialTension(const HexStencil& tube, const std::vector<Vec3>& x, const std::vector<Vec3>& onFirst, double z)
+std::vector<double> axialTension(const HexStencil& tube, const std::vector<Vec3>& x, const std::vector<Vec3>& onFirst, const std::vector<double>& heights)
 {
-	double sum = 0;
+	std::vector<double> sums(heights.size(), 0);
 	for (int family = 0; family < 3; ++family)
 		for (int k = 0; k < tube.familyRows(family); ++k) {
 			const auto far = HexStencil::farEnd(family, k);
 			for (int i = 0; i < tube.perRing; ++i) {
-				const bool firstBelow = x[tube.at(k, i)][2] < z, secondBelow = x[tube.at(k + far[0], i + far[1])][2] < z;
-				if (firstBelow == secondBelow) continue;
+				const double first = x[tube.at(k, i)][2], second = x[tube.at(k + far[0], i + far[1])][2];
 				const double up = onFirst[tube.familyStart(family) + k * tube.perRing + i][2];
-				sum += firstBelow ? up : -up;
+				for (size_t h = 0; h < heights.size(); ++h) {
+					const bool firstBelow = first < heights[h], secondBelow = second < heights[h];
+					if (firstBelow != secondBelow) sums[h] += firstBelow ? up : -up;
+				}
 			}
 		}
-	return sum;
+	return sums;
 }
 
-double axialPull(const std::vector<Vec3>& x, const std::vector<Vec3>& f, double z)
+std::vector<double> axialPull(const std::vector<Vec3>& x, const std::vector<Vec3>& f, const std::vector<double>& heights)
 {
-	double sum = 0;
+	std::vector<double> sums(heights.size(), 0);
 	for (size_t i = 0; i < x.size(); ++i)
-		if (!(x[i][2] < z)) sum -= f[i][2];
-	return sum;
+		for (size_t h = 0; h < heights.size(); ++h)
+			if (!(x[i][2] < heights[h])) sums[h] -= f[i][2];
+	return sums;
 }
 
 std::vector<RingLoad> ringLoads(const HexStencil& tube, const std::vector<Vec3>& x, const std::vector<Vec3>& f, double sphereRadius)

@@ -11,14 +11,14 @@ namespace hexmembrane {
 /// counts with what it still carries.
 std::vector<Vec3> bondForces(const BondForce& bonds, const BondState& state);
 
-/// Axial tension (N) that a tube carries through the horizontal plane at height z: sum over the bonds that cross it of the z component of the force that
+/// Axial tension (N) that a tube carries through the horizontal plane at each height z: sum over the bonds that cross it of the z component of the force that
 /// the part above exerts on the part below; positive pulls the two together. A bond that crosses belongs to one particle below z and one not below, so
 /// that every plane cuts the tube in two whatever its folds. Of a thin tube of radius r: 2 pi r N_z. Summed in the order of the bonds.
 /// \param x positions of the particles (m) \param onFirst force on the first particle of each bond (N)
-double axialTension(const HexStencil& tube, const std::vector<Vec3>& x, const std::vector<Vec3>& onFirst, double z);
+std::vector<double> axialTension(const HexStencil& tube, const std::vector<Vec3>& x, const std::vector<Vec3>& onFirst, const std::vector<double>& heights);
 
 /// The same (N) of forces f on the particles that add up to nothing, whatever calls them up: minus the axial forces on the particles that are not below z.
-double axialPull(const std::vector<Vec3>& x, const std::vector<Vec3>& f, double z);
+std::vector<double> axialPull(const std::vector<Vec3>& x, const std::vector<Vec3>& f, const std::vector<double>& heights);
 
 /// Radial load of a ring.
 struct RingLoad {

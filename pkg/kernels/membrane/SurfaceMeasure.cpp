@@ -3,6 +3,8 @@
 
 #include "kernels/base/Check.hpp"
 
+#include <algorithm>
+
 namespace hexmembrane {
 
 namespace {
@@ -28,27 +30,39 @@ Polygon clip(const Polygon& in, double level, double sign)
 	return out;
 }
 
+void add(const Polygon& polygon, TubeSlab& slab)
+{
+	const Vec3& first = polygon.corner[0];
+	for (int i = 1; i + 1 < polygon.size; ++i) {
+		const Vec3& b = polygon.corner[i];
+		const Vec3& c = polygon.corner[i + 1];
+		const Vec3 area = 0.5 * (b - first).cross(c - first);
+		const Vec3 centroid = (first + b + c) / 3;
+		slab.area += area.norm();
+		slab.volume += 0.5 * (centroid[0] * area[0] + centroid[1] * area[1]);
+	}
+}
+
 } // namespace
 
-TubeSlab measureTube(const std::vector<std::array<int, 3>>& triangles, const std::vector<Vec3>& x, double zBottom, double zTop)
+std::vector<TubeSlab> measureTube(const std::vector<std::array<int, 3>>& triangles, const std::vector<Vec3>& x, const std::vector<double>& heights)
 {
-	if (!(zBottom < zTop)) reject("zBottom", zBottom, "not below zTop = " + formatNumber(zTop), "give the lower platen's face first");
-	TubeSlab slab{0, 0};
+	for (size_t k = 1; k < heights.size(); ++k)
+		if (!(heights[k - 1] < heights[k]))
+			reject("zBottom", heights[k - 1], "not below zTop = " + formatNumber(heights[k]), "give the lower platen's face first");
+	std::vector<TubeSlab> slabs(heights.empty() ? 0 : heights.size() - 1, TubeSlab{0, 0});
 	for (const auto& t : triangles) {
-		Polygon polygon;
-		for (int corner : t) polygon.add(x[corner]);
-		polygon = clip(clip(polygon, zBottom, 1.), zTop, -1.);
-		const Vec3& first = polygon.corner[0];
-		for (int i = 1; i + 1 < polygon.size; ++i) {
-			const Vec3& b = polygon.corner[i];
-			const Vec3& c = polygon.corner[i + 1];
-			const Vec3 area = 0.5 * (b - first).cross(c - first);
-			const Vec3 centroid = (first + b + c) / 3;
-			slab.area += area.norm();
-			slab.volume += 0.5 * (centroid[0] * area[0] + centroid[1] * area[1]);
+		const auto [low, high] = std::minmax({x[t[0]][2], x[t[1]][2], x[t[2]][2]});
+		const auto above = std::lower_bound(heights.begin(), heights.end(), low);
+		for (size_t k = above == heights.begin() ? 0 : above - heights.begin() - 1; k < slabs.size() && heights[k] <= high; ++k) {
+			Polygon polygon;
+			for (int corner : t) polygon.add(x[corner]);
+			if (low < heights[k]) polygon = clip(polygon, heights[k], 1.);
+			if (heights[k + 1] < high) polygon = clip(polygon, heights[k + 1], -1.);
+			add(polygon, slabs[k]);
 		}
 	}
-	return slab;
+	return slabs;
 }
 
 double closedVolume(const std::vector<std::array<int, 3>>& triangles, const std::vector<Vec3>& x)

@@ -57,10 +57,11 @@ class Grains:
 
 def escaped(scene, grains):
 	"""Id of a grain whose centre is outside the lateral boundary or behind a platen's face, None when all are inside."""
-	centre = BodyArrays.positions(grains.ids)
+	height = BodyArrays.positions(grains.ids)[:, 2]
 	bottom, top = scene.faces()
-	lost = scene.lateralBoundary.outside(centre) | (centre[:, 2] <= bottom) | (centre[:, 2] >= top)
-	return grains.ids[int(numpy.argmax(lost))] if lost.any() else None
+	behind = (height <= bottom) | (height >= top)
+	lost = [*numpy.array(grains.ids)[behind].tolist(), *scene.lateralBoundary.outside(grains.ids)]
+	return min(lost, default=None)
 
 
 def inertialStress(grains, volume):
@@ -101,7 +102,7 @@ def row(scene, grains, reference, stage, elapsed):
 	forces = scene.bottomDrive.force, scene.topDrive.force
 	speed = scene.approachSpeed()
 	inertial = speed / height * grains.meanDiameter * math.sqrt(grains.density / pressure) if pressure > 0 else 0.0
-	energies = energy.current()
+	energies, transmitted = energy.current(), boundary.transmittedPressures()
 	loads = boundary.ownLoads(bottom, top)
 	dz, dr = height / reference.height - 1, radius / reference.radius - 1
 	return {
@@ -113,9 +114,9 @@ def row(scene, grains, reference, stage, elapsed):
 		"q_cell": (sum(forces) / 2 - pressure * scene.endArea()) / (volume / height),
 		"sigma3_target": pressure,
 		"sigma3_applied": boundary.appliedPressure,
-		"sigma3_transmitted_group3": boundary.transmittedPressure(3),
-		"sigma3_transmitted_group2": boundary.transmittedPressure(2),
-		"sigma3_transmitted_all": boundary.transmittedPressure(0),
+		"sigma3_transmitted_group3": transmitted[3],
+		"sigma3_transmitted_group2": transmitted[2],
+		"sigma3_transmitted_all": transmitted[0],
 		"volumetric_strain_radius": dz + 2 * dr,
 		"volumetric_strain_volume": volume / reference.volume - 1,
 		"porosity": 1 - grains.solidVolume / volume,
@@ -137,7 +138,7 @@ def row(scene, grains, reference, stage, elapsed):
 		"membrane_axial_mid": loads.axialPullMiddle,
 		"membrane_axial_end": loads.axialPullEnd,
 		"sigma3_membrane": loads.radialPressure,
-		"sigma3_distance": (boundary.transmittedPressure(3) - boundary.pressure) / pressure if pressure > 0 else 0.0,
+		"sigma3_distance": (transmitted[3] - boundary.pressure) / pressure if pressure > 0 else 0.0,
 	}
 
 

@@ -9,7 +9,6 @@ import math
 
 import numpy
 import yade
-from scipy.spatial import cKDTree
 from yade import O
 
 from hexmembrane.scene import geometry, timestep
@@ -249,8 +248,9 @@ class FlexibleMembrane(LateralBoundary):
 	def pressedArea(self, bottom, top):
 		return self.pressureEngine.area
 
-	def transmittedPressure(self, group):
-		return self.membrane.transmittedPressure(3 if group == 2 and not self.radialServo else group)
+	def transmittedPressures(self):
+		pressures = self.membrane.transmittedByGroup()
+		return pressures if self.radialServo else {**pressures, 2: pressures[3]}
 
 	def saturated(self):
 		loops = {"maxFactor": ("main body", self.pressureEngine), "servoMaxFactor": ("rows beside the platens", self.radialServo)}
@@ -270,22 +270,8 @@ class FlexibleMembrane(LateralBoundary):
 	def ownLoads(self, bottom, top):
 		return membraneLoads(self._ends(), self.sheet, self.pressureEngine, bottom, top)
 
-	def outside(self, points):
-		"""Which points between its ends are outside.
-
-		A point on the inner side of the membrane particle nearest to it, by the surface's normal there, is inside; the few others, where
-		the membrane is folded, are looked at by :func:`hexmembrane.scene.geometry.insideTube`.
-		"""
-		x, triangles = yade.BodyArrays.positions(self.membrane.ids), self._triangles
-		lost = numpy.zeros(len(points), dtype=bool)
-		near = numpy.flatnonzero(~geometry.insideCore(points, x, triangles, self.membrane.perRing))
-		if not len(near):
-			return lost
-		nearest = cKDTree(x).query(points[near])[1]
-		beyond = ((points[near] - x[nearest]) * geometry.normals(x, triangles)[nearest]).sum(axis=1) >= 0
-		for k in near[beyond]:
-			lost[k] = not geometry.insideTube(points[k], x, triangles, self.membrane.perRing)
-		return lost
+	def outside(self, ids):
+		return self.membrane.outside(ids)
 
 	def addFrequencySquare(self, square):
 		square[self.membrane.ids] += (2 / sheetStep(self.sheet)) ** 2

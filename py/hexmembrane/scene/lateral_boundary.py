@@ -93,8 +93,8 @@ class LateralBoundary(abc.ABC):
 		"""Area that the pressure acts on [m2]."""
 
 	@abc.abstractmethod
-	def transmittedPressure(self, group):
-		"""Pressure that arrives at the soil [Pa]; 0: all, 2: beside the platens, 3: main body."""
+	def transmittedPressures(self):
+		"""Pressure that arrives at the soil [Pa] by group; 0: all, 2: beside the platens, 3: main body."""
 
 	@property
 	@abc.abstractmethod
@@ -122,8 +122,8 @@ class LateralBoundary(abc.ABC):
 		return MembraneLoads()
 
 	@abc.abstractmethod
-	def outside(self, points):
-		"""Which of the points (N, 3) are outside, as booleans."""
+	def outside(self, ids):
+		"""Ids of those of these bodies whose centres are outside, for bodies between its ends."""
 
 	def addFrequencySquare(self, square):
 		"""Add to (bodies,) an upper bound of omega^2 [1/s2] of the springs that are no contacts."""

@@ -52,13 +52,10 @@ def membraneLoads(ends, sheet, pressureEngine, bottom, top):
 	:param top: height of the top platen's face [m].
 	"""
 	middle = 0.5 * (bottom + top)
-
-	def pull(height):
-		return sum(engine.axialTension(height) for engine in sheet)
-
+	pulls = [sum(pull) for pull in zip(*(engine.axialTension([middle, *ends]) for engine in sheet))]
 	return MembraneLoads(
 		axialPush=pressureEngine.axialPush(middle),
-		axialPullMiddle=pull(middle),
-		axialPullEnd=sum(pull(height) for height in ends) / 2,
+		axialPullMiddle=pulls[0],
+		axialPullEnd=sum(pulls[1:]) / 2,
 		radialPressure=sum(engine.radialShare(3) for engine in sheet),
 	)

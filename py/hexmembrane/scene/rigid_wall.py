@@ -88,12 +88,13 @@ class RigidWall(LateralBoundary):
 	def pressedArea(self, bottom, top):
 		return 2 * math.pi * self.shape.radius * (top - bottom)
 
-	def transmittedPressure(self, group):
+	def transmittedPressures(self):
 		"""The mean radial stress on the wall, the same for all groups."""
-		return self.servo.radialStress
+		return dict.fromkeys((0, 2, 3), self.servo.radialStress)
 
-	def outside(self, points):
-		return numpy.hypot(points[:, 0] - self.axis[0], points[:, 1] - self.axis[1]) >= self.shape.radius
+	def outside(self, ids):
+		x, y, _ = yade.BodyArrays.positions(ids).T - numpy.array(self.axis)[:, None]
+		return numpy.array(ids)[numpy.hypot(x, y) >= self.shape.radius].tolist()
 
 	def surface(self, startRadius):
 		"""The wall at its radius, from the height of the specimen's foot to its first head: pressure and normal displacement at points."""

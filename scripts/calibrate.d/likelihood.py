@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How likely a laboratory's curves are with a set of parameters, the scatter of packings measured. Needs no YADE.
+
+Errors along one curve hang together, so they count as a Gaussian process: covariance s_i s_j exp(-|e_i - e_j|/LENGTH) between strains e_i, e_j, with
+s^2 = packing^2 (1 + 1/seeds) + reading^2 + model^2. packing: scatter over seeds, pooled over all sets of parameters; the laboratory's specimen is one
+packing more. reading: of the laboratory's numbers. model: what the best model is wrong by, a share of the curve's largest value.
+"""
+
+import dataclasses
+
+import numpy
+from scipy.linalg import cho_factor, cho_solve
+
+#: Strain over which errors hang together.
+LENGTH = 0.02
+#: Standard deviation of a reading: stress ratio, volumetric strain.
+READING = {"stress_ratio": 0.05, "volumetric_strain": 0.0015}
+#: Points of a curve that are compared, evenly over its strain.
+POINTS = 25
+
+
+@dataclasses.dataclass
+class Target:
+	"""One quantity of one laboratory curve at the strains that are compared."""
+
+	curve: str
+	quantity: str
+	strain: numpy.ndarray
+	value: numpy.ndarray
+
+	@property
+	def key(self):
+		return self.curve, self.quantity
+
+
+def targets(curves, end):
+	"""The :class:`Target` list of laboratory curves, {name: Curve}; ``end``: {name: strain that the tests reach}."""
+	found = []
+	for name, curve in curves.items():
+		for quantity, series in curve.series.items():
+			last = min(series.strain[-1], end[name])
+			strain = numpy.linspace(max(series.strain[0], 0.0), last, POINTS + 1)[1:]
+			found.append(Target(name, quantity, strain, series.at(strain)))
+	return found
+
+
+class Evaluations:
+	"""What tests gave at the targets' strains. ``add`` one set of parameters after the other."""
+
+	def __init__(self, targets, model):
+		self.targets, self.model = targets, model
+		self._sets = []  # of each set {target's key: (seeds, points)}, None where no seed was done
+
+	def add(self, series):
+		"""``series``: {curve: [series of one seed, as :func:`hexmembrane.laboratory.misfit.ofTest` gives it]}; seeds that failed left out."""
+		rows = {}
+		for target in self.targets:
+			values = [one[target.quantity].at(target.strain) for one in series.get(target.curve, [])]
+			values = [row for row in values if numpy.isfinite(row).all()]
+			if not values:
+				self._sets.append(None)
+				return
+			rows[target.key] = numpy.array(values)
+		self._sets.append(rows)
+
+	def __len__(self):
+		return len(self._sets)
+
+	def mean(self, k, target):
+		"""Mean over seeds of set k at the target's strains; None when it failed."""
+		return None if self._sets[k] is None else self._sets[k][target.key].mean(axis=0)
+
+	def packing(self, target):
+		"""Standard deviation over seeds at the target's strains, pooled; zeros when no set has two seeds."""
+		squares, freedom = numpy.zeros(len(target.strain)), 0
+		for rows in self._sets:
+			if rows is not None and len(rows[target.key]) > 1:
+				squares += rows[target.key].var(axis=0, ddof=0) * len(rows[target.key])
+				freedom += len(rows[target.key]) - 1
+		return numpy.sqrt(squares / max(freedom, 1))
+
+	def deviation(self, target, seeds):
+		"""Standard deviation of laboratory less mean of ``seeds`` tests, at the target's strains."""
+		model = self.model * abs(target.value - target.value[0]).max()
+		return numpy.sqrt(self.packing(target) ** 2 * (1 + 1 / seeds) + READING[target.quantity] ** 2 + model**2)
+
+	def logLikelihood(self):
+		"""(sets,) log likelihoods; -inf for a set whose tests failed."""
+		found = numpy.full(len(self._sets), -numpy.inf)
+		factors = {}
+		for k, rows in enumerate(self._sets):
+			if rows is None:
+				continue
+			total = 0.0
+			for target in self.targets:
+				seeds = len(rows[target.key])
+				if (target.key, seeds) not in factors:
+					factors[target.key, seeds] = self._factor(target, seeds)
+				factor, logDeterminant = factors[target.key, seeds]
+				apart = rows[target.key].mean(axis=0) - target.value
+				total -= 0.5 * (apart @ cho_solve(factor, apart) + logDeterminant)
+			found[k] = total
+		return found
+
+	def _factor(self, target, seeds):
+		deviation = self.deviation(target, seeds)
+		covariance = numpy.outer(deviation, deviation) * numpy.exp(-abs(target.strain[:, None] - target.strain) / LENGTH)
+		covariance[numpy.diag_indices_from(covariance)] *= 1 + 1e-9
+		factor = cho_factor(covariance, lower=True)
+		return factor, 2 * float(numpy.log(numpy.diag(factor[0])).sum())
