@@ -14,7 +14,8 @@ public:
 	void go(const shared_ptr<Shape>& shape, const shared_ptr<State>& state, bool wire, const GLViewInfo& view) override;
 	RENDERS(Platen);
 	// clang-format off
-	YADE_CLASS_BASE_DOC_STATICATTRS(Gl1_Platen,GlShapeFunctor,"Draws a :yref:`Platen` in the 3D view: solid, or its edges and some lines of the side where the body or the view is set to wire.",
+	YADE_CLASS_BASE_DOC_STATICATTRS(Gl1_Platen,GlShapeFunctor,
+		"Draws a Platen in the 3D view: solid, or its edges and some lines of the side where the body or the view is set to wire.",
 		((int,slices,48,,"Number of flat strips that the round side is drawn with, 3 to 1000."))
 	);
 	// clang-format on

@@ -27,21 +27,36 @@ private:
 	void requireReached(Real target);
 
 	// clang-format off
-	YADE_CLASS_BASE_DOC_ATTRS(RadialWallServo,GlobalEngine,"Servo of the study's rigid wall: holds the mean radial stress on a :yref:`CylinderWall` at a target while only the radius moves. Stands after every engine that adds forces and before :yref:`NewtonIntegrator`.\n\nMean radial stress $\\sigma_r=\\sum F_n/(2\\pi R h)$ over the wall's contacts, $h$ the specimen's present height: the distance of the facing sides of two :yref:`Platens<Platen>`, or given.\n\nThe radius is the one degree of freedom of a mass $m$ on a dashpot $c$, pushed inwards by $\\sigma 2\\pi Rh$ and back by the specimen, with the recipe of :yref:`PlatenDrive`: $m=4K\\Delta t^2$, $c=2\\zeta\\sqrt{Km}$ with $K$ the summed stiffness of the wall's contacts, at most 1 % of the target a step. Stable for any stiffness. While nothing touches it the wall closes at :yref:`maxVelocity<RadialWallServo.maxVelocity>`. A wall that has to keep moving carries $4\\zeta K\\Delta t\\,v$ less than the target.\n\nWith :yref:`O.trackEnergy<Omega.trackEnergy>` the work is booked as 'wallWork', negative like YADE's other work from outside. All state is saved.\n\nErrors: a missing or erased wall or platen, a body of another shape, values that are missing or have the wrong sign, contacts that do not tell their stiffness, a target not reached within :yref:`timeLimit<RadialWallServo.timeLimit>`. Example::\n\n\tRadialWallServo(wall=id,stress=100e3,bottomPlaten=low,topPlaten=high,maxVelocity=.02)",
-		((Body::id_t,wall,-1,,"Id of the :yref:`CylinderWall` body, required."))
+	YADE_CLASS_BASE_DOC_ATTRS(RadialWallServo,GlobalEngine,
+		"Servo of the study's rigid wall: holds the mean radial stress on a CylinderWall at a target while only the radius moves. "
+		"Stands after every engine that adds forces and before NewtonIntegrator.\n\n"
+		"Mean radial stress σr = Σ Fn/(2 π R h) over the wall's contacts, h the specimen's present height: "
+		"the distance of the facing sides of two Platens, or given.\n\n"
+		"The radius is the one degree of freedom of a mass m on a dashpot c, pushed inwards by 2 π R h σ and back by the specimen, "
+		"with the recipe of PlatenDrive: m = 4 K Δt², c = 2 ζ sqrt(K m) with K the summed stiffness of the wall's contacts, "
+		"at most 1 % of the target a step. Stable for any stiffness. While nothing touches it the wall closes at maxVelocity. "
+		"A wall that has to keep moving carries 4 ζ K Δt v less than the target.\n\n"
+		"With O.trackEnergy the work is booked as 'wallWork', negative like YADE's other work from outside. All state is saved.\n\n"
+		"Errors: a missing or erased wall or platen, a body of another shape, values that are missing or have the wrong sign, "
+		"contacts that do not tell their stiffness, a target not reached within timeLimit. Example::\n\n"
+		"\tRadialWallServo(wall=id,stress=100e3,bottomPlaten=low,topPlaten=high,maxVelocity=.02)",
+		((Body::id_t,wall,-1,,"Id of the CylinderWall body, required."))
 		((Real,stress,NaN,,"Mean radial stress to hold [Pa], compression positive, > 0, required; may be changed at any time."))
-		((Body::id_t,bottomPlaten,-1,,"Id of the lower :yref:`Platen`; with topPlaten it gives the specimen's height."))
-		((Body::id_t,topPlaten,-1,,"Id of the upper :yref:`Platen`."))
+		((Body::id_t,bottomPlaten,-1,,"Id of the lower Platen; with topPlaten it gives the specimen's height."))
+		((Body::id_t,topPlaten,-1,,"Id of the upper Platen."))
 		((Real,height,NaN,,"Height of the specimen [m], when no platens are given."))
-		((Real,damping,HEXMEMBRANE_SERVO_DAMPING_DEFAULT,,"Damping ratio $\\zeta$, " HEXMEMBRANE_SERVO_DAMPING_RANGE "; 1 is critical for the contacts alone."))
+		((Real,damping,HEXMEMBRANE_SERVO_DAMPING_DEFAULT,,"Damping ratio ζ, " HEXMEMBRANE_SERVO_DAMPING_RANGE "; 1 is critical for the contacts alone."))
 		((Real,maxVelocity,NaN,,"Largest velocity of the radius [m/s], and the one of the approach. Required."))
-		((Real,tolerance,HEXMEMBRANE_SERVO_TOLERANCE_DEFAULT,,"Relative error of the stress, " HEXMEMBRANE_SERVO_TOLERANCE_RANGE ", below which the servo counts as settled."))
-		((Real,timeLimit,NaN,,"Time [s] after the start or a change of the target within which the servo must have settled once, else the run stops with an error; NaN: none."))
-		((Real,velocity,0,Attr::readonly,"Velocity of the radius, positive inwards [m/s]. |yupdate|"))
-		((Real,radialStress,NaN,Attr::readonly,"Mean radial stress at the last step [Pa], compression positive. |yupdate|"))
-		((Real,stiffness,0,Attr::readonly,"Summed normal stiffness of the wall's contacts [N/m]. |yupdate|"))
-		((bool,settled,false,Attr::readonly,"Whether the stress is within the tolerance. |yupdate|"))
-		((Real,work,0,Attr::readonly,"Work done on the specimen [J], trapezoidal. |yupdate|"))
+		((Real,tolerance,HEXMEMBRANE_SERVO_TOLERANCE_DEFAULT,,"Relative error of the stress, " HEXMEMBRANE_SERVO_TOLERANCE_RANGE
+			", below which the servo counts as settled."))
+		((Real,timeLimit,NaN,,
+			"Time [s] after the start or a change of the target within which the servo must have settled once, else the run stops with an error; NaN: "
+			"none."))
+		((Real,velocity,0,Attr::readonly,"Velocity of the radius, positive inwards [m/s]."))
+		((Real,radialStress,NaN,Attr::readonly,"Mean radial stress at the last step [Pa], compression positive."))
+		((Real,stiffness,0,Attr::readonly,"Summed normal stiffness of the wall's contacts [N/m]."))
+		((bool,settled,false,Attr::readonly,"Whether the stress is within the tolerance."))
+		((Real,work,0,Attr::readonly,"Work done on the specimen [J], trapezoidal."))
 		((Real,lastForce,0,Attr::hidden,""))
 		((Real,lastRadius,NaN,Attr::hidden,""))
 		((long,lastIter,-2,Attr::hidden,""))

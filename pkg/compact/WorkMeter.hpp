@@ -28,7 +28,8 @@ private:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(WorkMeter,Serializable,
-		"Work of an engine's forces on a membrane, summed by the trapezoidal rule $\\frac12(F_n+F_{n+1})(x_{n+1}-x_n)$. Part of :yref:`MembranePressure`, :yref:`MembraneRadialServo` and :yref:`MembraneORings`.",
+		"Work of an engine's forces on a membrane, summed by the trapezoidal rule (F(n) + F(n+1)) (x(n+1) - x(n))/2. "
+		"Part of MembranePressure, MembraneRadialServo and MembraneORings.",
 		((Real,work,0,Attr::readonly,"Work so far [J], up to the positions of the last step."))
 		((Real,ahead,0,(Attr::readonly|Attr::hidden),"Compact tier: half work of the way that led on from the last step's positions [J]."))
 		((long,lastIter,-2,(Attr::readonly|Attr::hidden),"Last step that was counted."))

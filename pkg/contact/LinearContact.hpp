@@ -25,25 +25,35 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(LinearMat,FrictMat,
-		"Material of PFC's linear contact laws, for grains, platens, walls and membrane particles alike; contacts by :yref:`Ip2_LinearMat_LinearMat_LinearPhys`.\n\n"
-		"Stiffness either directly (kn, ks: the body's own spring, in series with the partner's) or by PFC's deformability (emod, kratio: $k_n=\\pi E^* \\min(R_1,R_2)^2/(R_1+R_2)$ between two bodies of the same material, $\\pi E^* R$ on a boundary, $k_s=k_n/k^*$). "
-		"Stiffness and friction are required; what is not given (NaN) is an error at the first contact. A value out of range is refused at once and nothing changes.\n\n"
-		"``friction`` is PFC's coefficient $\\mu$; YADE's frictionAngle is the one that is kept, $\\arctan\\mu$, so that YADE's tools that set it (``setContactFriction``) work. "
-		"young and poisson follow from the stiffness, do not set them: $E=\\pi E^*/2$, with which YADE's own rule for two equal spheres gives the same $k_n$ and :yref:`PWaveTimeStep` is of use (NaN for stiffness given directly), $\\nu=k_s/k_n$.\n\n"
+		"Material of PFC's linear contact laws, for grains, platens, walls and membrane particles alike; contacts by Ip2_LinearMat_LinearMat_LinearPhys.\n\n"
+		"Stiffness either directly (kn, ks: the body's own spring, in series with the partner's) or by PFC's deformability (emod, kratio: "
+		"kn = π E* min(R1, R2)²/(R1 + R2) between two bodies of the same material, π E* R on a boundary, ks = kn/k*). "
+		"Stiffness and friction are required; what is not given (NaN) is an error at the first contact. "
+		"A value out of range is refused at once and nothing changes.\n\n"
+		"``friction`` is PFC's coefficient μ; YADE's frictionAngle is the one that is kept, arctan μ, "
+		"so that YADE's tools that set it (``setContactFriction``) work. "
+		"young and poisson follow from the stiffness, do not set them: "
+		"E = π E*/2, with which YADE's own rule for two equal spheres gives the same kn and PWaveTimeStep is of use (NaN for stiffness given "
+		"directly), ν = ks/kn.\n\n"
 		"Example::\n\n\tO.materials.append(LinearMat(emod=1e8,kratio=3,friction=.4,rollingFriction=.5,density=2650))",
-		((Real,kn,NaN,Attr::triggerPostLoad,"Normal stiffness of the body's spring [N/m], > 0, with :yref:`ks<LinearMat.ks>`; or emod and kratio."))
+		((Real,kn,NaN,Attr::triggerPostLoad,"Normal stiffness of the body's spring [N/m], > 0, with ks; or emod and kratio."))
 		((Real,ks,NaN,Attr::triggerPostLoad,"Shear stiffness of the body's spring [N/m], >= 0."))
-		((Real,emod,NaN,Attr::triggerPostLoad,"Effective modulus $E^*$ of contacts [Pa], > 0 (PFC: emod of the deformability method)."))
-		((Real,kratio,NaN,Attr::triggerPostLoad,"$k^*=k_n/k_s$ [-], > 0 (PFC: kratio)."))
-		((Real,rollingFriction,HEXMEMBRANE_ROLLING_FRICTION_DEFAULT,Attr::triggerPostLoad,"Rolling friction coefficient $\\mu_r$ [-], " HEXMEMBRANE_ROLLING_FRICTION_RANGE " (PFC: rr_fric). The contact has the smaller one of its two bodies."))
-		((Real,cbTensile,0,Attr::triggerPostLoad,"Tensile strength of a contact bond [N], >= 0, may be inf (PFC: cb_tenf). The contact has the smaller one; 0: no bond."))
-		((Real,cbShear,0,Attr::triggerPostLoad,"Shear strength of a contact bond [N], >= 0, may be inf (PFC: cb_shearf). The contact has the smaller one; 0: no bond."))
+		((Real,emod,NaN,Attr::triggerPostLoad,"Effective modulus E* of contacts [Pa], > 0 (PFC: emod of the deformability method)."))
+		((Real,kratio,NaN,Attr::triggerPostLoad,"k* = kn/ks [-], > 0 (PFC: kratio)."))
+		((Real,rollingFriction,HEXMEMBRANE_ROLLING_FRICTION_DEFAULT,Attr::triggerPostLoad,"Rolling friction coefficient μr [-], " HEXMEMBRANE_ROLLING_FRICTION_RANGE
+			" (PFC: rr_fric). The contact has the smaller one of its two bodies."))
+		((Real,cbTensile,0,Attr::triggerPostLoad,
+			"Tensile strength of a contact bond [N], >= 0, may be inf (PFC: cb_tenf). The contact has the smaller one; 0: no bond."))
+		((Real,cbShear,0,Attr::triggerPostLoad,
+			"Shear strength of a contact bond [N], >= 0, may be inf (PFC: cb_shearf). The contact has the smaller one; 0: no bond."))
 		,
 		createIndex();
 		young=poisson=frictionAngle=NaN;
 		,
-		.add_property("friction",&LinearMat::getFriction,&LinearMat::setFriction,"Friction coefficient $\\mu=\\tan$ frictionAngle [-], >= 0. The contact has the smaller one of its two bodies. Required.")
-		.def("requireComplete",&LinearMat::requireComplete,"Raises ValueError when stiffness or friction were not given. Of use before a run: the same error inside YADE's interaction loop ends the program.")
+		.add_property("friction",&LinearMat::getFriction,&LinearMat::setFriction,
+			"Friction coefficient μ = tan frictionAngle [-], >= 0. The contact has the smaller one of its two bodies. Required.")
+		.def("requireComplete",&LinearMat::requireComplete,"Raises ValueError when stiffness or friction were not given. Of use before a run: "
+			"the same error inside YADE's interaction loop ends the program.")
 	);
 	// clang-format on
 	REGISTER_CLASS_INDEX(LinearMat, FrictMat);
@@ -89,17 +99,18 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(LinearPhys,RotStiffFrictPhys,
-		"Contact of :yref:`Law2_ScGeom_LinearPhys_Linear`. Forces and moment are those on body 2, as everywhere in YADE; $k_{tw}$ is 0 (no twist resistance).",
-		((Real,rollingArm,0,,"$\\mu_r\\bar R$ [m]: the bending moment is at most this times the normal force; 0: no rolling resistance (then kr is 0, too)."))
+		"Contact of Law2_ScGeom_LinearPhys_Linear. Forces and moment are those on body 2, as everywhere in YADE; ktw is 0 (no twist resistance).",
+		((Real,rollingArm,0,,"μr Rm [m]: the bending moment is at most this times the normal force; 0: no rolling resistance (then kr is 0, too)."))
 		((Vector3r,moment,Vector3r::Zero(),,"Bending moment on body 2 [N m]."))
-		((bool,bonded,false,Attr::readonly,"Whether the contact bond is there, see :yref:`LinearPhys.bond`."))
+		((bool,bonded,false,Attr::readonly,"Whether the contact bond is there, see LinearPhys.bond."))
 		((Real,tensileStrength,0,,"Tensile strength of the bond [N]."))
 		((Real,shearStrength,0,,"Shear strength of the bond [N]."))
 		((bool,spheres,true,Attr::readonly,"Both bodies are spheres: lever arms follow from radii and overlap. Otherwise the bodies' positions are looked up."))
 		,
 		createIndex();
 		,
-		.def("bond",&LinearPhys::bond,(boost::python::arg("tensile"),boost::python::arg("shear")),"Bonds the contact with these strengths [N], > 0 or inf. Forces stay; a moment is let go in the next step (the bond has none).")
+		.def("bond",&LinearPhys::bond,(boost::python::arg("tensile"),boost::python::arg("shear")),
+			"Bonds the contact with these strengths [N], > 0 or inf. Forces stay; a moment is let go in the next step (the bond has none).")
 	);
 	// clang-format on
 	REGISTER_CLASS_INDEX(LinearPhys, RotStiffFrictPhys);
@@ -113,13 +124,18 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Ip2_LinearMat_LinearMat_LinearPhys,IPhysFunctor,
-		"Makes the :yref:`LinearPhys` of a new contact of two bodies of :yref:`LinearMat`, spheres both or a sphere and a boundary (:yref:`Platen`, :yref:`Box`, :yref:`Facet`, ...).\n\n"
-		"kn, ks: the two bodies' springs in series, $1/k=1/k_1+1/k_2$ (PFC's inheritance of properties given by body); a body with emod brings $k_{n}=2\\pi E^* \\min(R_1,R_2)^2/(R_1+R_2)$ ($2\\pi E^* R$ on a boundary), so that equal materials give PFC's deformability formula. "
-		"friction, rollingFriction, bond strengths: the smaller one. Rolling stiffness $k_r=k_s\\bar R^2$, $\\bar R=R_1R_2/(R_1+R_2)$, on a boundary $R$.\n\n"
+		"Makes the LinearPhys of a new contact of two bodies of LinearMat, spheres both or a sphere and a boundary (Platen, Box, Facet, ...).\n\n"
+		"kn, ks: the two bodies' springs in series, 1/k = 1/k1 + 1/k2 (PFC's inheritance of properties given by body); "
+		"a body with emod brings kn = 2 π E* min(R1, R2)²/(R1 + R2) (2 π E* R on a boundary), "
+		"so that equal materials give PFC's deformability formula. "
+		"friction, rollingFriction, bond strengths: the smaller one. Rolling stiffness kr = ks Rm², Rm = R1 R2/(R1 + R2), on a boundary R.\n\n"
 		"Existing contacts keep what they were made with. Errors end the program with their message, as every error inside YADE's interaction loop does.",
-		((bool,bondNewContacts,false,,"New contacts whose two materials both have cbTensile > 0 and cbShear > 0 are bonded. Across gaps too where the Ig2's interactionDetectionFactor makes contacts."))
+		((bool,bondNewContacts,false,,"New contacts whose two materials both have cbTensile > 0 and cbShear > 0 are bonded. "
+			"Across gaps too where the Ig2's interactionDetectionFactor makes contacts."))
 		,,
-		.def("bondContacts",&Ip2_LinearMat_LinearMat_LinearPhys::bondContacts,"Bonds every existing contact that is not bonded and whose two materials both have cbTensile > 0 and cbShear > 0 (PFC: contact method bond). Returns their number.")
+		.def("bondContacts",&Ip2_LinearMat_LinearMat_LinearPhys::bondContacts,
+			"Bonds every existing contact that is not bonded and whose two materials both have cbTensile > 0 and cbShear > 0 (PFC: contact method bond). "
+			"Returns their number.")
 	);
 	// clang-format on
 	FUNCTOR2D(LinearMat, LinearMat);

@@ -14,7 +14,9 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC(Ig2_Sphere_Sphere_LinearScGeom,Ig2_Sphere_Sphere_ScGeom,
-		"The :yref:`ScGeom` of two spheres, the same to the last bit as :yref:`Ig2_Sphere_Sphere_ScGeom`'s but made with less work, for contacts of :yref:`LinearPhys`: a contact that carries nothing but a normal force (no friction, rolling resistance or bond) gets normal, overlap, contact point and radii only; its shearInc is zero. Attributes are those of the base class.");
+		"The ScGeom of two spheres, the same to the last bit as Ig2_Sphere_Sphere_ScGeom's but made with less work, for contacts of LinearPhys: "
+		"a contact that carries nothing but a normal force (no friction, rolling resistance or bond) gets normal, overlap, "
+		"contact point and radii only; its shearInc is zero. Attributes are those of the base class.");
 	// clang-format on
 	FUNCTOR2D(Sphere, Sphere);
 	DEFINE_FUNCTOR_ORDER_2D(Sphere, Sphere);

@@ -25,12 +25,16 @@ private:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(Law2_ScGeom_LinearPhys_Linear,LawFunctor,
-		"PFC's linear contact laws on spheres and on spheres against boundaries: linear, linear with rolling resistance, linear contact bond. Every contact does what its :yref:`LinearPhys` asks for and no more.\n\n"
-		"Normal force $F_n=k_n u$, no tension: the contact is erased when $u<0$. Shear $F_s\\leftarrow F_s-k_s\\Delta u_s$, carried along with the contact plane, cut to $\\mu F_n$. "
-		"Rolling resistance $M\\leftarrow M-k_r\\Delta\\theta_b$, $k_r=k_s\\bar R^2$, bending only, cut to $\\mu_r\\bar R F_n$. "
-		"Bonded: $F_n=k_n u$ of either sign, no slip, no moment; tension above the strength takes both forces, shear above the strength leaves them in compression as far as $\\mu F_n$ holds.\n\n"
-		"The geometry is :yref:`ScGeom` (no 6D, no orientations). Its shear increment is PFC's true relative displacement at the contact point with ``Ig2_Sphere_Sphere_ScGeom(avoidGranularRatcheting=False)``; with YADE's default the tangential displacement of centres is $1+u/l$ times as long and energies close up to that factor only.\n\n"
-		"With :yref:`O.trackEnergy<Omega.trackEnergy>`: 'elastPotential', 'plastDissip' (sliding), 'rollDissip' (rolling), 'bondDissip' (elastic energy set free by breaking bonds).",
+		"PFC's linear contact laws on spheres and on spheres against boundaries: linear, linear with rolling resistance, linear contact bond. "
+		"Every contact does what its LinearPhys asks for and no more.\n\n"
+		"Normal force Fn = kn u, no tension: the contact is erased when u < 0. Shear Fs <- Fs - ks Δus, carried along with the contact plane, cut to μ Fn. "
+		"Rolling resistance M <- M - kr Δθ, kr = ks Rm², bending only, cut to μr Rm Fn. "
+		"Bonded: Fn = kn u of either sign, no slip, no moment; tension above the strength takes both forces, "
+		"shear above the strength leaves them in compression as far as μ Fn holds.\n\n"
+		"The geometry is ScGeom (no 6D, no orientations). Its shear increment is PFC's true relative displacement at the contact point with "
+		"``Ig2_Sphere_Sphere_ScGeom(avoidGranularRatcheting=False)``; "
+		"with YADE's default the tangential displacement of centres is 1 + u/l times as long and energies close up to that factor only.\n\n"
+		"With O.trackEnergy: 'elastPotential', 'plastDissip' (sliding), 'rollDissip' (rolling), 'bondDissip' (elastic energy set free by breaking bonds).",
 		((int,tensileBreaks,0,Attr::readonly,"Bonds that broke in tension so far."))
 		((int,shearBreaks,0,Attr::readonly,"Bonds that broke in shear so far."))
 	);

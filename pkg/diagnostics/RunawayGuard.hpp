@@ -14,7 +14,12 @@ public:
 	void action() override;
 
 	// clang-format off
-	YADE_CLASS_BASE_DOC_ATTRS(RunawayGuard,GlobalEngine,"Stops a run that has lost a body, with the body's id and the iteration in the message: when a position, velocity or angular velocity is not finite, when a sphere moves more than :yref:`maxStep<RunawayGuard.maxStep>` of its own radius in one step, or when any body is faster than :yref:`maxVelocity<RunawayGuard.maxVelocity>`. Of several bodies the one of the lowest id is named, whatever the number of threads.\n\nIt writes nothing, and so cannot overwrite a good state with a bad one: whoever saves states puts the name of the last one into :yref:`checkpoint<RunawayGuard.checkpoint>`, and the message passes it on.\n\nPlace: last in ``O.engines``, after :yref:`NewtonIntegrator`. It holds no state from step to step.",
+	YADE_CLASS_BASE_DOC_ATTRS(RunawayGuard,GlobalEngine,"Stops a run that has lost a body, with the body's id and the iteration in the message: "
+		"when a position, velocity or angular velocity is not finite, when a sphere moves more than maxStep of its own radius in one step, "
+		"or when any body is faster than maxVelocity. Of several bodies the one of the lowest id is named, whatever the number of threads.\n\n"
+		"It writes nothing, and so cannot overwrite a good state with a bad one: "
+		"whoever saves states puts the name of the last one into checkpoint, and the message passes it on.\n\n"
+		"Place: last in ``O.engines``, after NewtonIntegrator. It holds no state from step to step.",
 		((int,iterPeriod,10,,"Bodies are looked at every so many iterations, >= 1."))
 		((Real,maxStep,0.1,,"Largest way of a sphere in one step, over its radius, > 0; NaN: not looked at."))
 		((Real,maxVelocity,NaN,,"Largest velocity of any body [m/s], > 0; NaN: not looked at."))

@@ -21,7 +21,9 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BodyArrays,Serializable,
-		"Bodies' states as whole numpy arrays, one row for each id of a list, for scripts that look at many bodies: no loop over ``O.bodies`` in Python. The arrays are copies and read-only. They hold what ``O.bodies`` and ``O.forces`` do, in either tier.\n\n"
+		"Bodies' states as whole numpy arrays, one row for each id of a list, for scripts that look at many bodies: "
+		"no loop over ``O.bodies`` in Python. The arrays are copies and read-only. "
+		"They hold what ``O.bodies`` and ``O.forces`` do, in either tier.\n\n"
 		"Errors: ``RuntimeError`` for a body that does not exist, or one without a radius, with its id.\n\n"
 		"Example::\n\n\tx=BodyArrays.positions(membrane.ids)",
 		,/*ctor*/,
@@ -31,7 +33,8 @@ public:
 		.def("forces",&BodyArrays::forces,boost::python::arg("ids"),"Sums of all forces in the last step [N], (N, 3).").staticmethod("forces")
 		.def("radii",&BodyArrays::radii,boost::python::arg("ids"),"Radii of spheres [m], (N,).").staticmethod("radii")
 		.def("masses",&BodyArrays::masses,boost::python::arg("ids"),"Masses [kg], (N,).").staticmethod("masses")
-		.def("setReference",&BodyArrays::setReference,"Makes the present places and orientations of all bodies those that displacements count from (``refPos``, ``refOri``).").staticmethod("setReference")
+		.def("setReference",&BodyArrays::setReference,
+			"Makes the present places and orientations of all bodies those that displacements count from (``refPos``, ``refOri``).").staticmethod("setReference")
 	);
 	// clang-format on
 };

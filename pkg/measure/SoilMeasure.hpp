@@ -43,21 +43,33 @@ private:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(SoilMeasure,Serializable,
-		"Stress of the soil between two :yref:`platens<Platen>`, inside a :yref:`HexMembrane` or a :yref:`CylinderWall`, from its own contacts. The soil is all spheres that are not of the membrane.\n\n"
-		"Mean stress: $V\\sigma_{ij}=\\sum F_i l_j$ over the contacts of the grains, compression positive; $F$ the contact force on the second body, $l$ the branch from the first body's centre to the second's; to membrane, platens and wall it ends at the contact point (K. Bagi, Stress and strain in granular assemblies, Mech. Mater. 22, 1996). "
-		"$V$ is the volume between the platens' faces inside the membrane's inner surface (where its pressure acts) or the wall. The middle half lies between the heights 1/4 and 3/4; a branch that crosses such a plane counts with the part inside.\n\n"
-		"The same from the boundary alone (Gauss): $V\\sigma_{ij}=-\\sum f_i x_j$ over the contacts of the soil with everything else, $f$ the force on the soil at the point $x$, platens' friction included. The two differ by $\\sum f_i x_j$ over the grains' resultants, which inertia takes: a check of the instant and not of the contact law.\n\n"
+		"Stress of the soil between two platens, inside a HexMembrane or a CylinderWall, from its own contacts. "
+		"The soil is all spheres that are not of the membrane.\n\n"
+		"Mean stress: V σ_ij = Σ F_i l_j over the contacts of the grains, compression positive; "
+		"F the contact force on the second body, l the branch from the first body's centre to the second's; "
+		"to membrane, platens and wall it ends at the contact point (K. Bagi, Stress and strain in granular assemblies, Mech. Mater. 22, 1996). "
+		"V is the volume between the platens' faces inside the membrane's inner surface (where its pressure acts) or the wall. "
+		"The middle half lies between the heights 1/4 and 3/4; a branch that crosses such a plane counts with the part inside.\n\n"
+		"The same from the boundary alone (Gauss): V σ_ij = -Σ f_i x_j over the contacts of the soil with everything else, "
+		"f the force on the soil at the point x, platens' friction included. "
+		"The two differ by Σ f_i x_j over the grains' resultants, which inertia takes: a check of the instant and not of the contact law.\n\n"
 		"Contact forces and volume are those of the last step.\n\n"
 		"Errors: ``ValueError`` for neither or both of membrane and wall, ``RuntimeError`` for a body that does not exist or is of another shape.\n\n"
 		"Example::\n\n\tmeasure=SoilMeasure(membrane=m,bottomPlaten=0,topPlaten=1)\n\tsigma=measure.stress()['middle']",
 		((shared_ptr<HexMembrane>,membrane,,,"The membrane round the soil; or give wall."))
-		((Body::id_t,wall,-1,,"Id of the :yref:`CylinderWall` round the soil; -1: a membrane."))
-		((Body::id_t,bottomPlaten,-1,,"Id of the lower :yref:`Platen`. Required."))
+		((Body::id_t,wall,-1,,"Id of the CylinderWall round the soil; -1: a membrane."))
+		((Body::id_t,bottomPlaten,-1,,"Id of the lower Platen. Required."))
 		((Body::id_t,topPlaten,-1,,"Id of the upper one. Required."))
 		,/*ctor*/,
-		.def("stress",&SoilMeasure::stress,"A dict: 'whole', 'middle' and 'boundary', stress tensors [Pa] as (3, 3) arrays, compression positive: of the whole volume, of its middle half, and of the whole volume by the boundary alone; 'volume' and 'middleVolume' [m³]; 'coordination' [-], twice the contacts of two grains with a normal force over the number of grains; 'contactForce' [N], mean size of all contacts' forces, membrane and platens included.")
-		.def("profile",&SoilMeasure::profile,(boost::python::arg("slabs")=16),"Stress along the height: (edges [m], (n+1,); volumes [m³], (n,); stress tensors [Pa], (n, 3, 3)) of n equal slabs from the lower platen's face. Weighted with the volumes they add up to the whole specimen's stress exactly.")
-		.def("coordinationNumbers",&SoilMeasure::coordinationNumbers,boost::python::arg("ids"),"Contacts of each body that carry a normal force, all partners: integers, (N,).")
+		.def("stress",&SoilMeasure::stress,"A dict: 'whole', 'middle' and 'boundary', stress tensors [Pa] as (3, 3) arrays, compression positive: "
+			"of the whole volume, of its middle half, and of the whole volume by the boundary alone; 'volume' and 'middleVolume' [m³]; "
+			"'coordination' [-], twice the contacts of two grains with a normal force over the number of grains; "
+			"'contactForce' [N], mean size of all contacts' forces, membrane and platens included.")
+		.def("profile",&SoilMeasure::profile,(boost::python::arg("slabs")=16),"Stress along the height: (edges [m], (n+1,); volumes [m³], (n,); "
+			"stress tensors [Pa], (n, 3, 3)) of n equal slabs from the lower platen's face. "
+			"Weighted with the volumes they add up to the whole specimen's stress exactly.")
+		.def("coordinationNumbers",&SoilMeasure::coordinationNumbers,boost::python::arg("ids"),
+			"Contacts of each body that carry a normal force, all partners: integers, (N,).")
 		.add_property("faces",&SoilMeasure::faces_get,"Heights of the lower and the upper platen's face [m].")
 	);
 	// clang-format on

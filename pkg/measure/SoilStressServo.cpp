@@ -15,6 +15,9 @@ void SoilStressServo::prepare()
 		hexmembrane::reject("SoilStressServo.drive", string(drive ? "given together with pressure" : "None"), "what to press with is not clear",
 		                    "either drive=PlatenDrive(...) or pressure=MembranePressure(...)");
 	if (drive && beside) hexmembrane::reject("SoilStressServo.beside", string("given"), "a platen's drive has none", "leave it out, or give pressure");
+	if (pressure && (pressure->rampTime > 0 || (beside && beside->rampTime > 0)))
+		hexmembrane::reject("SoilStressServo.pressure", string("has a rampTime"), "a ramp delays what the servo sets in every correction",
+		                    "rampTime = 0 there, and raise SoilStressServo.stress in steps");
 	hexmembrane::requirePositive("SoilStressServo.stress", stress, "Pa");
 	hexmembrane::requireIn(hexmembrane::shared::servo_tolerance, "SoilStressServo.tolerance", tolerance, "(no unit)");
 	if (!math::isnan(timeLimit)) hexmembrane::requirePositive("SoilStressServo.timeLimit", timeLimit, "s");

@@ -28,10 +28,16 @@ private:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(SoilStressServo,GlobalEngine,
-		"Brings the axial or the radial stress in the middle half of the soil, from its own contacts (:yref:`SoilMeasure`), to a target: the axial one by the stress that a :yref:`PlatenDrive` in mode 'stress' holds, the radial one by the pressure that :yref:`MembranePressure` and :yref:`MembraneRadialServo` hold. Stands before those.\n\n"
-		"A platen that carries $\\sigma_3 A_e$ does not give the soil an axial stress of $\\sigma_3$: the membrane's inner surface encloses less than the platen's face, the membrane pulls at the O-rings, and rows beside the platens that are pressed radially have no axial share. "
-		"A transmitted pressure of $\\sigma_3$ does not give it a radial stress of $\\sigma_3$ either: the sheet rests on grains that reach beyond the mean inner surface.\n\n"
-		"An integral controller multiplies the load by a factor $f$: $T\\dot f=(\\sigma-\\sigma_s)/\\sigma$ with $\\sigma_s$ the soil's stress, within 1/:yref:`maxFactor<SoilStressServo.maxFactor>` and maxFactor, corrected 20 times within $T$; the load's engine gets $f\\sigma$ in every step. The factor waits while that engine is not within a hundredth of what it was asked for: what does not arrive yet is no error of the factor. "
+		"Brings the axial or the radial stress in the middle half of the soil, from its own contacts (SoilMeasure), to a target: "
+		"the axial one by the stress that a PlatenDrive in mode 'stress' holds, "
+		"the radial one by the pressure that MembranePressure and MembraneRadialServo hold. Stands before those.\n\n"
+		"A platen that carries σ3 Ae does not give the soil an axial stress of σ3: "
+		"the membrane's inner surface encloses less than the platen's face, the membrane pulls at the O-rings, "
+		"and rows beside the platens that are pressed radially have no axial share. "
+		"A transmitted pressure of σ3 does not give it a radial stress of σ3 either: the sheet rests on grains that reach beyond the mean inner surface.\n\n"
+		"An integral controller multiplies the load by a factor f: T df/dt = (σ - σs)/σ with σs the soil's stress, within 1/maxFactor and maxFactor, "
+		"corrected 20 times within T; the load's engine gets f σ in every step. "
+		"The factor waits while that engine is not within a hundredth of what it was asked for: what does not arrive yet is no error of the factor. "
 		"It rests while the drive is in mode 'velocity'; ``dead=True`` leaves a pressure as it is.\n\n"
 		"Errors: ``ValueError`` for parameters, ``RuntimeError`` for what is missing.\n\n"
 		"Example::\n\n\tSoilStressServo(measure=SoilMeasure(membrane=m,bottomPlaten=0,topPlaten=1),drive=top,stress=100e3,timeConstant=.01)",
@@ -40,11 +46,11 @@ private:
 		((shared_ptr<MembranePressure>,pressure,,,"The main body's pressure, which is set from here: the radial stress is closed."))
 		((shared_ptr<MembraneRadialServo>,beside,,,"With pressure: the servo beside the platens, which gets the same; none: there are no such rows."))
 		((Real,stress,NaN,,"Stress that the soil is to have [Pa], compression positive, > 0. Required."))
-		((Real,timeConstant,NaN,,"Time constant $T$ [s], two time steps at least. Required. 10 times $d\\sqrt{\\rho/\\sigma}$ is slow and safe."))
+		((Real,timeConstant,NaN,,"Time constant T [s], two time steps at least. Required. 10 times d sqrt(ρ/σ) is slow and safe."))
 		((Real,maxFactor,1.5,,"Largest factor, and the inverse of the smallest [-]; above 1."))
 		((Real,tolerance,HEXMEMBRANE_SERVO_TOLERANCE_DEFAULT,,"Relative error of the soil's stress below which the loop counts as settled [-], " HEXMEMBRANE_SERVO_TOLERANCE_RANGE "."))
-		((Real,timeLimit,NaN,,"Time after a change of :yref:`stress<SoilStressServo.stress>` [s] within which it must have settled once, else the run stops with an error; NaN: none."))
-		((Real,factor,1,Attr::readonly,"Present factor $f$ [-]."))
+		((Real,timeLimit,NaN,,"Time after a change of stress [s] within which it must have settled once, else the run stops with an error; NaN: none."))
+		((Real,factor,1,Attr::readonly,"Present factor f [-]."))
 		((Real,measured,NaN,Attr::readonly,"The soil's stress at the last correction [Pa], compression positive."))
 		((bool,saturated,false,Attr::readonly,"The loop stands at one of its limits: the target cannot be reached."))
 		((bool,settled,false,Attr::readonly,"Whether the soil's stress has been within the tolerance since stress changed."))

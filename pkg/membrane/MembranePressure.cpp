@@ -45,6 +45,7 @@ void MembranePressure::prepareMesh()
 void MembranePressure::prepare()
 {
 	hexmembrane::requireFinite("MembranePressure.pressure", pressure, "Pa");
+	hexmembrane::requireNonNegative("MembranePressure.rampTime", rampTime, "s");
 	loop().require(scene->dt);
 	if (loop().closed()) {
 		if (!membrane)
@@ -83,8 +84,9 @@ void MembranePressure::action() { stepOverBodies(*this); }
 
 void MembranePressure::step(StepView& view)
 {
+	followPressure(pressure, rampTime, scene->dt, rampTarget, ramps);
 	if (!tube) return stepMesh();
-	loop().close(*scene, pressure, [&] { return membrane->transmitted(view, 3, "MembranePressure"); });
+	loop().close(*scene, ramped(), [&] { return membrane->transmitted(view, 3, "MembranePressure"); });
 	tube->compute(applied(), view.positions(*membrane));
 	view.addForces(*membrane, {{tube->firstRing(), tube->lastRing()}}, tube->force, nullptr, meter.get());
 }
@@ -97,7 +99,7 @@ void MembranePressure::stepMesh()
 	if (missing >= 0)
 		throw std::runtime_error("MembranePressure: body " + std::to_string(vertexIds[missing]) + " of the loaded surface is gone (iteration " +
 		                         std::to_string(scene->iter) + "); fix: do not erase it, or load the last checkpoint");
-	mesh.compute(pressure, positions, force);
+	mesh.compute(ramped(), positions, force);
 	for (int i = 0; i < count; ++i) {
 		if (!isFinite(force[i])) throwNotFinite("MembranePressure: force", vertexIds[i], *scene);
 		scene->forces.addForce(vertexIds[i], force[i]);

@@ -24,6 +24,7 @@ void MembraneRadialServo::prepare()
 		throw std::runtime_error("MembraneRadialServo.membrane = None: no membrane to act on; fix: MembraneRadialServo(membrane=HexMembrane(...))");
 	membrane->requireGenerated("MembraneRadialServo");
 	hexmembrane::requireFinite("MembraneRadialServo.pressure", pressure, "Pa");
+	hexmembrane::requireNonNegative("MembraneRadialServo.rampTime", rampTime, "s");
 	loop().require(scene->dt);
 	if (loop().closed()) hexmembrane::requirePositive("MembraneRadialServo.maxFactor", maxFactor, "1");
 	rule = areaRuleFromName(areaRule);
@@ -41,7 +42,9 @@ void MembraneRadialServo::action() { stepOverBodies(*this); }
 
 void MembraneRadialServo::step(StepView& view)
 {
-	loop().close(*scene, pressure, [&] { return membrane->transmitted(view, 2, "MembraneRadialServo"); });
+	followPressure(pressure, rampTime, scene->dt, rampTarget, ramps);
+	loop().close(*scene, ramped(), [&] { return membrane->transmitted(view, 2, "MembraneRadialServo"); });
+	const Real applied = factor * ramped();
 	const hexmembrane::PaddedRings& x = view.positions(*membrane);
 	const auto tube = membrane->stencil();
 	if (!force.fits(tube.perRing, tube.rings)) force = hexmembrane::PaddedRings(tube.perRing, tube.rings);
@@ -50,7 +53,7 @@ void MembraneRadialServo::step(StepView& view)
 		const Real a = hexmembrane::particleArea(tube, x, k, membrane->sphereRadius, rule);
 		const auto centre = hexmembrane::ringShape(tube, x, k).centre;
 		for (int i = 0; i < tube.perRing; ++i) {
-			force.set(k, i, factor * pressure * a * hexmembrane::towardAxis(x.get(k, i), centre));
+			force.set(k, i, applied * a * hexmembrane::towardAxis(x.get(k, i), centre));
 			if (!isFinite(force.get(k, i))) throwNotFinite("MembraneRadialServo: force", membrane->ids[tube.at(k, i)], *scene);
 		}
 		area += a * tube.perRing;

@@ -36,31 +36,42 @@ private:
 public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(CylinderPacking,Serializable,
-		"Dense random packing of spheres of given radii inside a vertical cylinder (axis +z, flat ends), free of overlaps or in equilibrium under a small isotropic stress, evenly dense, isotropic, sizes mixed, without gravity. "
-		"Reproducible: the same input and :yref:`seed<CylinderPacking.seed>` give the same bits with the same program.\n\n"
-		"Method: centres are drawn uniformly; spheres of reduced size are pushed apart as frictionless soft spheres (FIRE minimiser, Bitzek et al., Phys. Rev. Lett. 97, 170201, 2006) and grown step by step; a jammed packing is loosened, shaken and grown again. "
+		"Dense random packing of spheres of given radii inside a vertical cylinder (axis +z, flat ends), "
+		"free of overlaps or in equilibrium under a small isotropic stress, evenly dense, isotropic, sizes mixed, without gravity. "
+		"Reproducible: the same input and seed give the same bits with the same program.\n\n"
+		"Method: centres are drawn uniformly; spheres of reduced size are pushed apart as frictionless soft spheres (FIRE minimiser, Bitzek et al., "
+		"Phys. Rev. Lett. 97, 170201, 2006) and grown step by step; a jammed packing is loosened, shaken and grown again. "
 		"Porosity here is 1 - (volume of the spheres)/(pi radius^2 height), walls included.\n\n"
-		"Limits: random close packing of these sizes less the walls' share. For a uniform sand in a cylinder twice as high as wide about 0.38 with 7,000 grains and 0.40 with 1,200; denser is a RuntimeError that names what was reached. "
+		"Limits: random close packing of these sizes less the walls' share. "
+		"For a uniform sand in a cylinder twice as high as wide about 0.38 with 7,000 grains and 0.40 with 1,200; "
+		"denser is a RuntimeError that names what was reached. "
 		"Without a stress there are no contacts afterwards (no overlap, no force): a consolidation makes them.\n\n"
-		"With a :yref:`stress<CylinderPacking.stress>` the packing starts looser and its grains grow inside fixed smooth walls, as linear frictional spheres, slowly. Where the stress exceeds the wanted one, friction is lowered until they give way; at the end it has its own value again. "
-		"So any porosity between the packing without friction and the one that keeps its friction is reached at the wanted stress (mean within 3 %, porosity within :yref:`porosityTolerance<CylinderPacking.porosityTolerance>`, unbalanced ratio 1e-3); beyond is a RuntimeError that names the porosity reached. "
+		"With a stress the packing starts looser and its grains grow inside fixed smooth walls, as linear frictional spheres, slowly. "
+		"Where the stress exceeds the wanted one, friction is lowered until they give way; at the end it has its own value again. "
+		"So any porosity between the packing without friction and the one that keeps its friction is reached at the wanted stress (mean within 3 %, "
+		"porosity within porosityTolerance, unbalanced ratio 1e-3); beyond is a RuntimeError that names the porosity reached. "
 		"Without friction there is one porosity at a stress, which a porosity of NaN takes as it comes. "
-		"With 7,000 grains of a uniform sand and a friction of 0.4 that is 0.384 to 0.432. Shear forces of the contacts are not handed over: without them the stress stays within a few percent.\n\n"
-		"Errors: ValueError for bad input, before anything is changed; RuntimeError for a porosity out of reach and for results read before :yref:`generate<CylinderPacking.generate>`.\n\n"
-		"Example: ``p = CylinderPacking(radius=.02, height=.08, radii=[.0017]*2000, porosity=.42, seed=7); p.generate(); O.bodies.append([utils.sphere(c, r) for c, r in zip(p.centres, p.sizes)])``",
+		"With 7,000 grains of a uniform sand and a friction of 0.4 that is 0.384 to 0.432. Shear forces of the contacts are not handed over: "
+		"without them the stress stays within a few percent.\n\n"
+		"Errors: ValueError for bad input, before anything is changed; RuntimeError for a porosity out of reach and for results read before generate.\n\n"
+		"Example: ``p = CylinderPacking(radius=.02, height=.08, radii=[.0017]*2000, porosity=.42, seed=7); p.generate(); "
+		"O.bodies.append([utils.sphere(c, r) for c, r in zip(p.centres, p.sizes)])``",
 		((Real,radius,NaN,,"Radius of the cylinder [m]. Required."))
 		((Real,height,NaN,,"Height of the cylinder [m]. Required."))
 		((Vector3r,origin,Vector3r::Zero(),,"Centre of the cylinder's bottom face [m]."))
 		((vector<Real>,radii,,,"Radii of the spheres [m], in any order. Required. With a porosity, only their proportions count."))
-		((Real,porosity,NaN,,"Porosity wanted, 0 to 1 [-]: all radii are multiplied by one factor, :yref:`scale<CylinderPacking.scale>`, to meet it exactly. NaN: radii are kept as they are; with a stress, which needs a porosity, the packing's own where there is no friction."))
+		((Real,porosity,NaN,,"Porosity wanted, 0 to 1 [-]: all radii are multiplied by one factor, scale, to meet it exactly. NaN: radii are kept as they are; "
+			"with a stress, which needs a porosity, the packing's own where there is no friction."))
 		((long,seed,HEXMEMBRANE_PACKING_SEED_DEFAULT,,"Seed of the random numbers [-], " HEXMEMBRANE_PACKING_SEED_RANGE "."))
 		((Real,tolerance,1e-4,,"Room left round touching spheres over the mean radius [-], in (0, 0.01]. Smaller is slower in dense packings."))
 		((int,shakes,8,,"How often a jammed packing is loosened, shaken and grown again before it is given up [-], >= 0."))
 		((Real,stress,0,,"Mean pressure on the walls wanted [Pa], compression positive, at most 0.01 young. 0: a packing without contacts."))
-		((Real,young,NaN,,"Contact modulus [Pa], required with a stress: kn = 2 young r1 r2/(r1+r2) between grains, young r at a wall (as YADE's FrictMat has it with equal moduli)."))
+		((Real,young,NaN,,"Contact modulus [Pa], required with a stress: kn = 2 young r1 r2/(r1+r2) between grains, "
+			"young r at a wall (as YADE's FrictMat has it with equal moduli)."))
 		((Real,stiffnessRatio,HEXMEMBRANE_STIFFNESS_RATIO_DEFAULT,,"kn/ks of the contacts [-], " HEXMEMBRANE_STIFFNESS_RATIO_RANGE "."))
 		((Real,friction,NaN,,"Coefficient of friction between the grains of the finished packing [-], required with a stress. The walls are smooth."))
-		((Real,rollingFriction,HEXMEMBRANE_ROLLING_FRICTION_DEFAULT,,"Coefficient of rolling friction $\\mu_r$ between the grains of the finished packing [-], " HEXMEMBRANE_ROLLING_FRICTION_RANGE ": moment at most $\\mu_r r_1 r_2/(r_1+r_2) F_n$. With it looser packings hold."))
+		((Real,rollingFriction,HEXMEMBRANE_ROLLING_FRICTION_DEFAULT,,"Coefficient of rolling friction μr between the grains of the finished packing [-], " HEXMEMBRANE_ROLLING_FRICTION_RANGE
+			": moment at most μr r1 r2/(r1 + r2) Fn. With it looser packings hold."))
 		((Real,porosityTolerance,1e-3,,"By how much the porosity of a packing under stress may differ from the wanted one [-], in (0, 0.1)."))
 		((vector<Vector3r>,packedCentres,,Attr::hidden,"See centres."))
 		((vector<Real>,packedRadii,,Attr::hidden,"See sizes."))
@@ -76,12 +87,16 @@ public:
 		((Real,packedFriction,NaN,Attr::hidden,"See frictionReached.")),
 		/*ctor*/,
 		.def("generate",&CylinderPacking::generate,"Makes the packing; a failure leaves the results of before as they were.")
-		.add_property("centres",boost::python::make_function(&CylinderPacking::centres,boost::python::return_value_policy<boost::python::return_by_value>()),"Centres of the spheres [m], list of Vector3 in the order of :yref:`radii<CylinderPacking.radii>`. After generate().")
-		.add_property("sizes",boost::python::make_function(&CylinderPacking::sizes,boost::python::return_value_policy<boost::python::return_by_value>()),"Radii of the spheres as packed [m]: radii times scale. After generate().")
+		.add_property("centres",boost::python::make_function(&CylinderPacking::centres,boost::python::return_value_policy<boost::python::return_by_value>()),
+			"Centres of the spheres [m], list of Vector3 in the order of radii. After generate().")
+		.add_property("sizes",boost::python::make_function(&CylinderPacking::sizes,boost::python::return_value_policy<boost::python::return_by_value>()),
+			"Radii of the spheres as packed [m]: radii times scale. After generate().")
 		.add_property("porosityReached",&CylinderPacking::porosityReached,"Porosity of the packing [-]. After generate().")
-		.add_property("maxOverlap",&CylinderPacking::overlapLeft,"Largest overlap of two spheres, or of a sphere with the wall, over the mean radius [-]: 0 without a stress, else what the largest contact force asks for. After generate().")
+		.add_property("maxOverlap",&CylinderPacking::overlapLeft,"Largest overlap of two spheres, or of a sphere with the wall, over the mean radius [-]: "
+			"0 without a stress, else what the largest contact force asks for. After generate().")
 		.add_property("scale",&CylinderPacking::scale,"Common factor on the radii [-]. After generate().")
-		.add_property("shakesUsed",&CylinderPacking::shakesUsed,"How often the packing jammed and was shaken [-]: 0 far from the densest state. After generate().")
+		.add_property("shakesUsed",&CylinderPacking::shakesUsed,
+			"How often the packing jammed and was shaken [-]: 0 far from the densest state. After generate().")
 		.add_property("radialStress",&CylinderPacking::radialStress,"Mean pressure on the cylinder's side [Pa]. After generate() with a stress.")
 		.add_property("axialStress",&CylinderPacking::axialStress,"Mean pressure on the cylinder's ends [Pa]. After generate() with a stress.")
 		.add_property("coordination",&CylinderPacking::coordination,"Mean number of contacts of a grain with grains [-]. After generate() with a stress.")

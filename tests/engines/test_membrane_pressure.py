@@ -218,3 +218,46 @@ def test_erasedBodyIsNamed(O, tier):
 	O.bodies.erase(m.ids[150])
 	with pytest.raises(RuntimeError, match=r"body %d .*gone.*; fix: " % m.ids[150]):
 		O.step()
+
+
+@pytest.mark.parametrize("kind", [MembranePressure, MembraneRadialServo], ids=["pressure", "servo"])
+def test_aRampIsACosineAndGoesOnAfterALoad(O, tier, kind, tmp_path):
+	"""From 0 to P, then to 3 P before the first ramp has ended: the two add up. The force is linear in the pressure."""
+	m = makeMembrane(platenRows=1)
+	O.engines = engines(tier, [slack(m), kind(membrane=m, pressure=P, rampTime=40e-9)])
+	O.dt = 1e-9
+	index = m.ids[m.perRing * (m.rings // 2 if kind is MembranePressure else m.oRingRows)]
+	ramp = lambda age: 0.5 * (1 - np.cos(np.pi * min(max(age, 0), 40) / 40))
+	found = {}
+	for step in range(71):
+		if step == 20:
+			find(kind).pressure = 3 * P
+			O.save(str(tmp_path / "ramp.yade.gz"))
+			O.load(str(tmp_path / "ramp.yade.gz"))
+		run(1)
+		found[step] = np.linalg.norm(forcesOn([index])[0])
+	full = found[70]
+	expected = np.array([(ramp(step) + 2 * ramp(step - 20)) / 3 for step in found])
+	assert np.array(list(found.values())) / full == pytest.approx(expected, abs=1e-9)
+	if kind is MembranePressure:
+		assert find(kind).applied == 3 * P
+		find(kind).pressure = P
+		assert find(kind).applied == 3 * P  # not before a step
+	find(kind).rampTime = -1.0
+	with pytest.raises(ValueError, match=f"{kind.__name__}.rampTime = -1"):
+		O.step()
+
+
+def test_rampOnAMeshOfOnesOwn(O):
+	corners = [(0, 0, 0), (1, 0, 0.1), (0, 1, 0), (0.2, 0.1, 1)]
+	ids = O.bodies.append([utils.sphere(c, 0.1) for c in corners])
+	triangles = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]
+	pressure = MembranePressure(ids=ids, triangles=triangles, pressure=P, surface="centre", rampTime=20e-12)
+	O.engines = [ForceResetter(), pressure, NewtonIntegrator()]
+	O.dt = 1e-12
+	run(1)
+	assert pressure.applied == 0 and np.abs(forcesOn(ids)).max() == 0
+	run(10)
+	assert pressure.applied == pytest.approx(P / 2)
+	run(20)
+	assert pressure.applied == P

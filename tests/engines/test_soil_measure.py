@@ -215,6 +215,7 @@ def test_servoStopsAtItsTimeLimit(O, tier):
 		({"drive": None}, "SoilStressServo.drive = None: what to press with"),
 		({"pressure": yade.MembranePressure()}, "SoilStressServo.drive = given together with pressure"),
 		({"beside": yade.MembraneRadialServo()}, "SoilStressServo.beside = given"),
+		({"drive": None, "pressure": yade.MembranePressure(rampTime=1e-3)}, "SoilStressServo.pressure = has a rampTime"),
 	),
 )
 def test_servoRefuses(O, tier, change, part):

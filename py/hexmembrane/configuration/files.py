@@ -45,7 +45,7 @@ def merged(base, changes):
 def derived(config, changes):
 	"""A checked configuration like ``config`` but for ``changes``, such as ``{"boundary": "wall", "specimen": {"seed": 2}}``; given are its keys and those.
 
-	:raises ConfigError: as :meth:`Config.of`.
+	:raises ConfigError: as ``Config.of``.
 	"""
 	made = Config.of(merged(toDict(config), changes))
 	made.given = config.given | frozenset(paths(changes))

@@ -65,7 +65,7 @@ class LocalHistory:
 		self._local.setReference(reference)
 
 	def step(self):
-		"""End a step: :attr:`fields` are its. Returns (places of the grains when it began [m], their displacements in it [m], volumes of their cells then [m3])."""
+		"""End a step: ``fields`` are its. Returns (places of the grains when it began [m], their displacements in it [m], volumes of their cells then [m3])."""
 		before = self._local.reference["centres"]
 		found = self._local.measure(advance=True)
 		for name in _SUMMED:

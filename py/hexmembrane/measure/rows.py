@@ -92,7 +92,7 @@ def unbalanced(ids, contactForce):
 
 
 def row(scene, grains, reference, stage, elapsed):
-	"""The measured row as a dict, of the last step in either tier; see :data:`hexmembrane.output.records.COLUMNS`."""
+	"""The measured row as a dict, of the last step in either tier; see ``COLUMNS`` of :mod:`hexmembrane.output.records`."""
 	measured = scene.measure.stress()
 	boundary = scene.lateralBoundary
 	bottom, top = scene.faces()

@@ -16,14 +16,14 @@ from hexmembrane.run import manifest
 from hexmembrane.run.manifest import KEPT, CheckpointError, Manifest
 
 RECORDS = "records.csv"
-PICTURE = "test.png"
+PICTURE, REPORT = "test.png", "report.html"
 #: What ``measure`` writes, and all that a test writes besides manifest, lock and checkpoints.
 _INSIDE = ("regions.csv", "profile.csv", "bands.csv", "fields.h5")
-_OWN = ("config.yaml", "packing.txt", RECORDS, PICTURE, "vtk", *_INSIDE, "generated.yade.gz", "consolidated.yade.gz", "sheared.yade.gz", "checkpoint.json")
+_OWN = ("config.yaml", "packing.txt", RECORDS, PICTURE, REPORT, "vtk", *_INSIDE, "generated.yade.gz", "consolidated.yade.gz", "sheared.yade.gz", "checkpoint.json")
 _LABELLED = re.compile(rf"({'|'.join(KINDS)})(-[0-9]+)?\.yade\.gz")
 _NUMBERED = re.compile(r"checkpoint-([0-9]+)\.yade")
 #: Names under which files are written before they are renamed.
-_PARTS = ("part-*.yade", "part-*.yade.gz", "config.yaml.part", "packing.txt.*.part", "test.png.part", "fields.h5.part", "manifest.json.part", "vtk/*.part")
+_PARTS = ("part-*.yade", "part-*.yade.gz", "config.yaml.part", "packing.txt.*.part", "test.png.part", "report.html.part", "fields.h5.part", "manifest.json.part", "vtk/*.part")
 
 _REASONS = {
 	errno.ENOSPC: "free space on the disk",
@@ -62,7 +62,7 @@ class Store:
 	"""The files of one folder, held by one run.
 
 	:param folder: existing folder, locked by the caller where others may come.
-	:param content: its :class:`Manifest`; None: an empty one.
+	:param content: its :class:`hexmembrane.run.manifest.Manifest`; None: an empty one.
 	"""
 
 	def __init__(self, folder, content=None):

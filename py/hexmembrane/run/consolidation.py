@@ -5,9 +5,11 @@ import math
 
 from yade import O
 
+from hexmembrane.configuration.config import restTolerance
 from hexmembrane.run.progress import Progress
-from hexmembrane.run.stage import QUASISTATIC, RAMP_PARTS, Stage, StageError
+from hexmembrane.run.stage import RAMP_PARTS, Stage, StageError
 from hexmembrane.scene.builder import checkTimeStep
+from hexmembrane.scene.timestep import QUASISTATIC
 
 #: Share of the pressure that the first ramp begins with: servos hold no stress of 0.
 _FIRST = 0.01
@@ -90,11 +92,7 @@ class Consolidation(Stage):
 		return errors
 
 	def _tolerance(self):
-		"""The configured one, or what the lateral boundary can hold: without a closed loop the membrane's own tension is on the soil too."""
-		tolerance = self.config.consolidation.tolerance
-		if tolerance is not None:
-			return tolerance
-		return 0.05 if self.config.boundary == "membrane" and self.config.membrane.pressureTime == math.inf else 0.005
+		return restTolerance(self.config.consolidation.tolerance, self.config.boundary, self.config.membrane.pressureTime)
 
 	def _atRest(self, rampTime):
 		row = self.test.lastRow

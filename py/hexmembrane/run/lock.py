@@ -25,7 +25,7 @@ class LockError(RuntimeError):
 
 
 class FolderLock:
-	"""The lock of a folder, held until :meth:`release`, the end of a ``with`` or the end of the process.
+	"""The lock of a folder, held until ``release()``, the end of a ``with`` or the end of the process.
 
 	:param folder: existing folder.
 	:raises LockError: another run holds it, or the file is somebody else's; the message names the owner.

@@ -214,11 +214,28 @@ def _run(config, budget, settled, store, until, start, own, quiet, say, tell):
 		return _stages(test, until, say)
 
 
+def _report(out, say):
+	"""The page of the test in a folder; a library of it that is not installed is told of."""
+	# a test without a page does not wait for what it needs
+	from hexmembrane.report import page
+	from hexmembrane.report.libraries import LibraryError
+
+	try:
+		page.write(out / checkpoints.REPORT, page.gather([out]))
+		say(f"wrote {out / checkpoints.REPORT}")
+	except LibraryError as error:
+		say(f"no {checkpoints.REPORT}: {error}, or output.report: false")
+
+
 def _stages(test, until, say):
 	test.proceed(until)
 	if until is None or test.plan[[planned.label for planned in test.plan].index(until)].chain:
 		picture = test.out / checkpoints.PICTURE
 		plot(test.records.path, picture, test.config.title)
 		say(f"wrote {test.records.path}, {picture}" + (f" and {test.frames.folder}" if test.frames.written else ""))
+		if test.config.output.report and test.config.stages is None:
+			_report(test.out, say)
+		elif test.config.output.report:
+			say(f"no {checkpoints.REPORT}: its page shows one consolidation and one shear, and this test has a list of stages")
 	say(f"done in {clock(test.elapsed())}")
 	return test

@@ -8,8 +8,6 @@ from hexmembrane.scene import timestep
 
 #: Parts that a smooth change of the pressure is divided into; each is 1 % of the time.
 RAMP_PARTS = 100
-#: Largest inertial number of what counts as quasi-static.
-QUASISTATIC = 1e-3
 
 
 class StageError(RuntimeError):

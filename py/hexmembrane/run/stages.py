@@ -66,7 +66,7 @@ class TriaxialTest:
 		self._earlierRows = self._countEarlier(resumed.count)
 		self.frames, self.records = Frames(self.out, checkpoint.frames), Records(self.out / RECORDS, checkpoint.records.size)
 		self.inside = Inside(self.config, self.out, checkpoint.inside)
-		self.scene.guard.checkpoint = str(self.out / checkpoint.state)
+		self.scene.tellCheckpoint(self.out / checkpoint.state)
 
 	# What all stages share
 
@@ -161,7 +161,7 @@ class TriaxialTest:
 			if self.scene.loop is None:
 				image.load(self.out / state)
 				self.scene = Scene()
-		self.scene.guard.checkpoint = str(self.out / state)
+		self.scene.tellCheckpoint(self.out / state)
 
 	def show(self, progress, done):
 		"""Show how far the stage is, with its last row."""

@@ -9,9 +9,10 @@ from hexmembrane.configuration import ConfigError
 from hexmembrane.configuration.stages import SHEAR, plan, span
 from hexmembrane.run.pressure_watch import PressureWatch
 from hexmembrane.run.progress import Progress
-from hexmembrane.run.stage import QUASISTATIC, RAMP_PARTS, Stage, StageError
+from hexmembrane.run.stage import RAMP_PARTS, Stage, StageError
 from hexmembrane.scene.builder import checkTimeStep
 from hexmembrane.scene.handles import Scene
+from hexmembrane.scene.timestep import QUASISTATIC
 
 #: Share of the height that consolidation may take, for what is checked before it.
 _SHORTER = 0.1

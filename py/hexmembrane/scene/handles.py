@@ -9,17 +9,20 @@ from yade import O
 
 from hexmembrane.scene import boundaries, timestep
 from hexmembrane.scene.flexible_membrane import MASK
-from hexmembrane.scene.lateral_boundary import singleEngine
+from hexmembrane.scene.lateral_boundary import optionalEngine, singleEngine
 
 
 class Scene:
 	"""Handles to the parts of the scene in ``O``; make a new one after ``O.load``.
 
-	Attributes: ``lateralBoundary`` (a :class:`hexmembrane.scene.lateral_boundary.LateralBoundary`), ``guard`` (RunawayGuard),
+	Attributes: ``lateralBoundary`` (a :class:`hexmembrane.scene.lateral_boundary.LateralBoundary`), ``guard`` (RunawayGuard, None without),
 	``bottomDrive`` and ``topDrive`` (the PlatenDrive of each end platen), ``axialServo`` and ``radialServo`` (SoilStressServo, None where the platen's force or the transmitted pressure is held),
 	``measure`` (a SoilMeasure), ``loop`` (the compact tier's engine, None in the reference tier).
 
-	:raises RuntimeError: the scene in ``O`` is not one of :func:`hexmembrane.scene.builder.build`.
+	A scene of one's own will do. What it needs: two PlatenDrive, and either a RadialWallServo, or one each of MembraneBonds, MembranePressure and
+	MembraneORings; in ``O.engines``, or in those of a CompactLoop. Grains have masks without the membrane's bit 2.
+
+	:raises RuntimeError: some of it is missing.
 	"""
 
 	def __init__(self):
@@ -28,10 +31,10 @@ class Scene:
 		for engine in [*O.engines, *(self.loop.engines if self.loop else ())]:
 			byType.setdefault(type(engine).__name__, []).append(engine)
 		self.lateralBoundary = boundaries.ofEngines(byType)
-		self.guard = singleEngine(byType, "RunawayGuard")
+		self.guard = optionalEngine(byType, "RunawayGuard")
 		drives = byType.get("PlatenDrive", ())
 		if len(drives) != 2:
-			raise RuntimeError(f"Scene.engines = {len(drives)} PlatenDrive: 2 expected; fix: load a state saved by this test")
+			raise RuntimeError(f"Scene.engines = {len(drives)} PlatenDrive: 2 expected; fix: one for each end platen")
 		self.bottomDrive, self.topDrive = sorted(drives, key=lambda drive: -drive.direction[2])
 		servos = byType.get("SoilStressServo", ())
 		self.axialServo = next((servo for servo in servos if servo.drive), None)
@@ -119,6 +122,11 @@ class Scene:
 		"""Leave the membrane's pressure at what has brought the soil's radial stress to its target: from here on the transmitted pressure is held."""
 		if self.radialServo:
 			self.radialServo.dead = True
+
+	def tellCheckpoint(self, file):
+		"""Have the guard, if there is one, name this file when it stops a run."""
+		if self.guard:
+			self.guard.checkpoint = str(file)
 
 	def setTimeLimit(self, limit):
 		"""Time [s] that each servo has to reach its target once, none without."""

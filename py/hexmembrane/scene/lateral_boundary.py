@@ -54,7 +54,7 @@ class LateralBoundary(abc.ABC):
 	@classmethod
 	@abc.abstractmethod
 	def make(cls, config, packing):
-		"""Append its bodies, as configured, round the packing; its :class:`BoundaryParts`."""
+		"""Append its bodies, as configured, round the packing; its :class:`hexmembrane.scene.lateral_boundary.BoundaryParts`."""
 
 	@property
 	@abc.abstractmethod
@@ -140,7 +140,7 @@ def singleEngine(engines, name):
 	"""
 	ofType = engines.get(name, ())
 	if len(ofType) != 1:
-		raise RuntimeError(f"Scene.engines = {len(ofType)} {name}: 1 expected; fix: load a state saved by this test")
+		raise RuntimeError(f"Scene.engines = {len(ofType)} {name}: 1 expected; fix: add one to O.engines, or to those of CompactLoop")
 	return ofType[0]
 
 

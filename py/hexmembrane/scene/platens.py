@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """End platens as bodies.
 
-A platen is one body with the shape :yref:`Platen`, a solid cylinder. This module places it by the face that touches the specimen,
-which is what one knows, and not by its centre. Motion is given by the engine :yref:`PlatenDrive`; contacts need
-:yref:`Bo1_Platen_Aabb` and :yref:`Ig2_Platen_Sphere_ScGeom` (or ``...6D``).
+A platen is one body with the shape `Platen`, a solid cylinder. This module places it by the face that touches the specimen,
+which is what one knows, and not by its centre. Motion is given by the engine `PlatenDrive`; contacts need
+`Bo1_Platen_Aabb` and `Ig2_Platen_Sphere_ScGeom` (or ``...6D``).
 """
 
 import math
