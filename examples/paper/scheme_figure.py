@@ -85,9 +85,9 @@ def compute(name, folder, settings, slices):
 	apply(name)
 	test = TriaxialTest(config, folder)
 	with test.records:
-		test.consolidate()
+		test.proceed("consolidation")
 		profiles = [profileAndRow(test, slices)]
-		test.shear()
+		test.proceed()
 		profiles.append(profileAndRow(test, slices))
 	return profiles
 

@@ -38,14 +38,13 @@ class Watched(stages.TriaxialTest):
 			self.kill(9)
 		return row
 
-	def shear(self):
-		if self.case.drive is None:
-			return super().shear()
+	def runStage(self, k):
+		if self.case.drive is None or not self.plan[k].straining:
+			return super().runStage(k)
 		if self.rowCount == 0:
 			self.advance(1)
 			self.row()
 		self.case.drive(self)
-		self.checkpoint("sheared")
 		return None
 
 

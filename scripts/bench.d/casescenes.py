@@ -25,7 +25,7 @@ def _rows(test, velocities, steps):
 		test.scene.topDrive.velocity = velocities(test.rowCount)
 		test.advance(steps)
 		test.row()
-		test._maybeCheckpoint()
+		test.maybeCheckpoint()
 
 
 def _stepsOf(test, strain):
@@ -57,7 +57,7 @@ def rest(steps):
 		while test.rowCount <= test.config.output.records:
 			test.advance(steps // test.config.output.records)
 			test.row()
-			test._maybeCheckpoint()
+			test.maybeCheckpoint()
 
 	return drive
 
@@ -149,7 +149,7 @@ def gas(folder, short):
 
 def _grainStep():
 	"""What builder.build takes for the critical step of such spheres before there are contacts."""
-	from hexmembrane.configuration.config import Specimen
+	from hexmembrane.configuration.specimen import Specimen
 	from hexmembrane.scene import timestep
 
 	emod = 2 * KN / (math.pi * RADIUS)  # PFC's deformability: kn = pi emod R/2 for equal spheres

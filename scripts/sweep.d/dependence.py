@@ -14,7 +14,7 @@ import pathlib
 from typing import Callable, Optional
 
 from hexmembrane.configuration import toDict
-from hexmembrane.configuration.config import PATHS
+from hexmembrane.configuration.specimen import PATHS
 
 SPECIMEN, CONSOLIDATION, SHEAR = STAGES = ("specimen", "consolidation", "shear")
 #: Raised when the same keys name another result, so that no folder of before is taken for it.
@@ -30,7 +30,7 @@ class At:
 
 
 def _made(config):
-	return config.specimen.packing is None
+	return config.specimen.made
 
 
 def _stressed(config):
@@ -68,10 +68,17 @@ TABLE = {
 	"accuracy": (),  # what it chooses is settled before anything is named
 	"tier": _ALWAYS[CONSOLIDATION],
 	"boundary": _ALWAYS[CONSOLIDATION],
+	"stages": _ALWAYS[CONSOLIDATION],  # refused in a study
 	"specimen.radius": _ALWAYS[SPECIMEN],
 	"specimen.height": _ALWAYS[SPECIMEN],
 	"specimen.packing": _ALWAYS[SPECIMEN],
+	"specimen.balls": _ALWAYS[SPECIMEN],
+	"specimen.ballsUnit": (At(SPECIMEN, lambda config: config.specimen.balls is not None),),
 	"specimen.gradation": _PACKED,
+	"specimen.radiusRange": _PACKED,
+	"specimen.radiusMean": _PACKED,
+	"specimen.radiusDeviation": _PACKED,
+	"specimen.radiusBins": _PACKED,
 	"specimen.scale": _PACKED,
 	"specimen.cutBelow": _PACKED,
 	"specimen.cutAbove": _PACKED,
@@ -81,6 +88,8 @@ TABLE = {
 	"specimen.stress": _PACKED,
 	"specimen.friction": (At(SPECIMEN, _stressed), At(CONSOLIDATION, lambda config: config.consolidation.friction is None), At(SHEAR)),
 	"specimen.packingRollingFriction": (At(SPECIMEN, _stressed),),
+	"specimen.kn": _STIFFNESS,
+	"specimen.ks": _STIFFNESS,
 	"specimen.emod": _STIFFNESS,
 	"specimen.kratio": _STIFFNESS,
 	"specimen.*": _ALWAYS[CONSOLIDATION],

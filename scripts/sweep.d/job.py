@@ -66,7 +66,7 @@ def hasCheckpoint(test):
 def _configuration(keys, folder):
 	"""The job's configuration as YAML, files by their whole paths."""
 	specimen = keys["specimen"]
-	files = {name: str(folder / specimen[name]) for name in ("packing", "gradation") if specimen[name] is not None}
+	files = {name: str(folder / specimen[name]) for name in ("packing", "gradation", "balls") if specimen.get(name) is not None}
 	return yaml.safe_dump({**keys, "specimen": {**specimen, **files}}, sort_keys=False)
 
 

@@ -9,7 +9,7 @@ import shutil
 from dependence import CONSOLIDATION, SHEAR, SPECIMEN, contentOf, givesOwnPorosity, names
 import studyfile
 from hexmembrane.configuration import ConfigError, toDict
-from hexmembrane.configuration.config import PATHS
+from hexmembrane.configuration.specimen import PATHS
 from hexmembrane.run import estimate
 from hexmembrane.scene import accuracy, specimen
 
@@ -39,7 +39,7 @@ def _costs(config, radii):
 
 	:raises ConfigError: the test is beyond this machine, or not sound.
 	"""
-	estimate.requireStiffness(config)
+	estimate.requireStiffness(config, radii)
 	estimate.requireTravel(config)
 	needs = estimate.Estimate.of(config, radii)
 	needs.require(config, estimate.Machine.here())

@@ -67,11 +67,11 @@ BAD = [
 	("specimen.radius", "20 mm", "is not a number in m", "> 0"),
 	("specimen.radius", True, "is not a number", "m"),
 	("specimen.radius", [0.02], "is not a number", "m"),
-	("specimen.radius", None, "has no value", "radius of the specimen"),
+	("specimen.radius", None, "is missing", "give radius of the specimen (m)"),
 	("specimen.height", "", "is not a number", "m"),
 	("specimen.raduis", 0.02, "unknown key", "did you mean 'radius'"),
 	("speciman", {}, "unknown key", "did you mean 'specimen'"),
-	("qwertz", 1, "unknown key", "known keys are title, accuracy, tier, boundary, specimen"),
+	("qwertz", 1, "unknown key", "known keys are title, accuracy, tier, boundary, stages, specimen"),
 	("specimen", 5, "is not a mapping", "key: value"),
 	("specimen", [1], "is not a mapping", "key: value"),
 	("specimen.grains", 100.5, "is not a whole number", "whole number"),
@@ -170,6 +170,7 @@ def test_freeKeys():
 		"tier",
 		"specimen.packing",
 		"specimen.gradation",
+		"specimen.balls",
 		"consolidation.unbalanced",
 		"consolidation.tolerance",
 		"consolidation.maxSteps",
@@ -201,7 +202,7 @@ def test_resolvedRoundTrip(folder):
 	assert {"date", "hexmembrane", "commit", "yade", "python", "numpy", "threads"} <= set(text["made"])
 	assert text["made"]["yade"] and text["made"]["threads"] >= 1
 	keys = {row[0] for row in table(Config)}
-	assert keys == {f"{a}.{b}" for a, part in text.items() if isinstance(part, dict) and a != "made" for b in part} | {"title", "accuracy", "tier", "boundary"}
+	assert keys == {f"{a}.{b}" for a, part in text.items() if isinstance(part, dict) and a != "made" for b in part} | {"title", "accuracy", "tier", "boundary", "stages"}
 	assert toDict(configuration.load(folder / "resolved.yaml")) == toDict(made)
 	assert not list(folder.glob("*.part"))
 

@@ -10,10 +10,17 @@ PACKAGE = pathlib.Path(__file__).parents[2] / "py" / "hexmembrane"
 #: A sub-package imports from itself and from those before it. This is the order of py/hexmembrane/README.md.
 ORDER = ("configuration", "scene", "measure", "output", "laboratory", "report", "run")
 WITHOUT_YADE = (
+	"configuration.json_schema",
+	"configuration.pfc",
+	"configuration.specimen",
+	"configuration.stages",
+	"configuration.stiffness",
 	"configuration.schema",
 	"configuration.config",
 	"configuration.reader",
+	"configuration.balls",
 	"scene.gradation",
+	"scene.number_sizes",
 	"scene.packing_file",
 	"scene.timestep",
 	"scene.geometry",

@@ -27,7 +27,7 @@ def add(store, made, stage="shear", name=None):
 	state = store.stateName(name)
 	(store.folder / state).write_bytes(f"state {state} {made.size}".encode())
 	entry = manifest.entry(store.folder / state)
-	store.add(Checkpoint(state, stage, 7, {"step": 3, "time": 0.5}, Entry(made.position(), made.sha256), [[0.25, 0]], REFERENCE, 1.5), entry)
+	store.add(Checkpoint(state, stage, 7, {"step": 3, "time": 0.5, "strain": 0.0}, Entry(made.position(), made.sha256), [[0.25, 0]], REFERENCE, 1.5), entry)
 	return state
 
 
@@ -140,9 +140,9 @@ def test_wrongValues(folder):
 @pytest.mark.parametrize(
 	"key, value, message",
 	[
-		("format", 99, "format = 99: this version reads 1"),
+		("format", 99, "format = 99: this version reads 2"),
 		("states_version", 1, "states_version = 1: this version reads 2"),
-		("checkpoints.0.stage", "rest", r"checkpoints\[0\].stage = 'rest': is no stage, they are generated, consolidation, shear"),
+		("checkpoints.0.stage", "rest 1", r"checkpoints\[0\].stage = 'rest 1': is no label of a stage"),
 		("checkpoints.1.state", "gone.yade", r"checkpoints\[1\].state = 'gone.yade': is not one of the states"),
 		("checkpoints.1.records", None, r"checkpoints\[1\].records = None: is no JSON object"),
 		("checkpoints.1.reference.height", -1, r"reference.height = -1: is not a finite number >= "),

@@ -5,7 +5,7 @@ import re
 
 import numpy
 import pytest
-from hexmembrane.configuration.config import Specimen
+from hexmembrane.configuration.specimen import Specimen
 from hexmembrane.measure.rows import Grains
 from hexmembrane.output import records
 from hexmembrane.scene import timestep

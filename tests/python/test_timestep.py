@@ -6,7 +6,7 @@ import math
 
 import numpy
 import pytest
-from hexmembrane.configuration.config import Specimen
+from hexmembrane.configuration.specimen import Specimen
 from hexmembrane.scene import timestep
 
 X = numpy.array([[1.0, 0, 0]])
@@ -128,7 +128,7 @@ def test_grainStep(ratio):
 
 def estimate(grains, smallest, largest, particleRadius):
 	"""Of grains and of a membrane with bonds that are soft, as a scene has them."""
-	return timestep.grainStep(grains, smallest), timestep.membraneStep(grains, 1000.0, largest, particleRadius, 1.0)
+	return timestep.grainStep(grains, smallest), timestep.membraneStep(grains.springs, grains.springs, 1000.0, largest, particleRadius, 1.0)
 
 
 def test_estimateScales():
@@ -145,10 +145,10 @@ def test_estimateScales():
 def test_membraneOfBondsAlone():
 	"""Without grains to speak of, the membrane's step is its bonds'; the two kinds of spring add their omega^2."""
 	soft = Specimen(radius=1, height=1, gradation="x", emod=1e-9)
-	assert timestep.membraneStep(soft, 1000.0, 2e-3, 1e-3, 3e-6) == pytest.approx(3e-6, rel=1e-9)
+	assert timestep.membraneStep(soft.springs, soft.springs, 1000.0, 2e-3, 1e-3, 3e-6) == pytest.approx(3e-6, rel=1e-9)
 	hard = Specimen(radius=1, height=1, gradation="x")
-	contacts = timestep.membraneStep(hard, 1000.0, 2e-3, 1e-3, math.inf)
-	assert timestep.membraneStep(hard, 1000.0, 2e-3, 1e-3, contacts) == pytest.approx(contacts / math.sqrt(2), rel=1e-12)
+	contacts = timestep.membraneStep(hard.springs, hard.springs, 1000.0, 2e-3, 1e-3, math.inf)
+	assert timestep.membraneStep(hard.springs, hard.springs, 1000.0, 2e-3, 1e-3, contacts) == pytest.approx(contacts / math.sqrt(2), rel=1e-12)
 
 
 def test_stiffness():

@@ -7,78 +7,17 @@
 import dataclasses
 import math
 import os
-from typing import Optional
+from typing import List, Optional
 
+from hexmembrane.configuration import balls
 from hexmembrane.configuration.measure import Measure
-from hexmembrane.configuration.schema import LONGEST_PATH, REQUIRED, ConfigError, build, key, paths, section, shared, toDict
+from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, paths, section, shared, toDict
+from hexmembrane.configuration.specimen import PATHS, Specimen
+from hexmembrane.configuration.stages import Stage, checkPlan
+from hexmembrane.configuration.stiffness import Springs, checkSprings, ownKey, springsOf
 
-#: Keys of the specimen that are files.
-PATHS = ("packing", "gradation")
 #: Poisson's ratio of a lattice whose bonds have no shear stiffness, and how near to it a value, written with six digits say, is it.
 _CENTRAL, _NEAR = 1 / 3, 1e-6
-
-
-@dataclasses.dataclass
-class Specimen:
-	"""The grains: gradation, packing, contact law."""
-
-	radius: float = key(REQUIRED, "radius of the specimen", "m", low=0, openLow=True)
-	height: float = key(REQUIRED, "height of the specimen", "m", low=0, openLow=True)
-	packing: Optional[str] = key(None, "packing file to take instead of making one; relative to the configuration's folder", free=True, longest=LONGEST_PATH)
-	gradation: Optional[str] = key(None, "CSV file of the gradation (see gradation.py); relative to the configuration's folder", free=True, longest=LONGEST_PATH)
-	scale: Optional[float] = key(
-		None, "factor on the gradation's diameters; none with a wished number of grains: it follows from that", "", low=0, openLow=True
-	)
-	cutBelow: Optional[float] = key(None, "leave out grains with a diameter below this, before scaling", "m", low=0)
-	cutAbove: Optional[float] = key(None, "leave out grains with a diameter above this, before scaling", "m", low=0, openLow=True)
-	grains: Optional[int] = key(None, "number of grains wished; none: follows from porosity, volume and scale", "", low=20, high=1000000)
-	porosity: float = key(
-		0.40, "porosity of the packing, before consolidation; grains without friction under a stress have their own, leave the key out", "", low=0.3, high=0.6
-	)
-	seed: int = shared("packing_seed", "seed of the packing's random numbers", high=2**31 - 1)
-	density: float = key(2650.0, "density of the grains", "kg/m3", low=0, openLow=True)
-	stress: Optional[float] = key(
-		None,
-		"isotropic stress under which the packing is made, small against the test's; none: grains that touch nothing",
-		"Pa",
-		low=0,
-		openLow=True,
-	)
-	friction: float = shared(
-		"friction",
-		"coefficient of friction mu between grains, tan of the angle, Fs <= mu Fn: in shear, in consolidation unless that has its own, "
-		"and in a packing made under stress",
-		default=0.5,
-		high=5,
-	)
-	rollingFriction: float = shared("rolling_friction", "coefficient of rolling friction mu_r between grains, moment <= mu_r R1 R2/(R1 + R2) Fn", high=5)
-	packingRollingFriction: float = shared(
-		"rolling_friction", "coefficient of rolling friction while a packing is made under stress; looser ones need it, it may be rollingFriction's value", high=5
-	)
-	emod: float = key(
-		4e7,
-		"contact modulus of PFC's deformability: kn = pi emod min(R1, R2)^2/(R1 + R2), pi emod R on platens and wall; "
-		"equal grains of diameter d: kn/(p d) = pi emod/(4 p), at 314 the peak of q was 10 %, at 1000 4 % above that at 3000 (examples/accuracy)",
-		"Pa",
-		low=0,
-		openLow=True,
-	)
-	kratio: float = shared("stiffness_ratio", "kn/ks of the contacts", high=1000)
-	massScaling: bool = key(
-		False,
-		"grains smaller than the largest get its mass times their share of its radius, m = m_max r/r_max: all grains then have the critical step of the "
-		"largest, volumes and forces stay, inertia grows",
-	)
-
-	def check(self, path):
-		if (self.packing is None) == (self.gradation is None):
-			raise ConfigError(
-				f"{path}.gradation", self.gradation, "the grains need one source, a gradation or a packing", "give exactly one of the two"
-			)
-		if self.scale is not None and self.grains is not None:
-			raise ConfigError(f"{path}.scale", self.scale, "the number of grains is wished too, it fixes the scale", "remove one of the two")
-		if None not in (self.cutBelow, self.cutAbove) and self.cutBelow >= self.cutAbove:
-			raise ConfigError(f"{path}.cutBelow", self.cutBelow, f"is not below cutAbove = {self.cutAbove}", "swap or change the cuts")
 
 
 @dataclasses.dataclass
@@ -106,6 +45,11 @@ class Membrane:
 		3e-4, "thickness of the material; only young * thickness matters, twice pressure * grain radius or more", "m", low=0, openLow=True
 	)
 	poisson: float = shared("lattice_poisson", "in-plane Poisson's ratio of the lattice; 1/3 has central forces only", default=_CENTRAL)
+	contactKn: Optional[float] = key(
+		None,
+		"normal stiffness of a membrane sphere's own spring towards grains and platens, in series with theirs; none: the grains' own", "N/m", low=0, openLow=True
+	)
+	contactKs: Optional[float] = key(None, "shear stiffness of the same spring, which acts where there is friction; none: contactKn", "N/m", low=0, openLow=True)
 	density: float = key(1000.0, "density of the membrane's spheres", "kg/m3", low=0, openLow=True)
 	densityScaling: Optional[float] = key(
 		1.0, "factor on the mass of the membrane's spheres, for a longer time step where they set it; none: as much as lets the grains set it", "", low=1
@@ -159,6 +103,15 @@ class Membrane:
 		openLow=True,
 		infinite=True,
 	)
+	maxFactor: float = key(
+		1.5,
+		"largest factor between the pressure on the membrane and the one asked for, and the inverse of the least: where the membrane carries more, the loops stand at it",
+		"",
+		low=1,
+		high=1000,
+		openLow=True,
+	)
+	servoMaxFactor: float = key(2.0, "largest such factor of the rows beside the platens, whose least is 0", "", low=1, high=1000, openLow=True)
 	REPLACED = {
 		"gain": "membrane.servoTime, a time constant in s; for gain: 0, .inf",
 		"pressureGain": "membrane.pressureTime, a time constant in s; for pressureGain: 0, .inf",
@@ -180,6 +133,8 @@ class Membrane:
 			raise ConfigError(
 				f"{path}.shearStrength", self.shearStrength, "bonds with poisson = 1/3 carry no shear force", "leave it out, or lower poisson"
 			)
+		if self.contactKs is not None and self.contactKn is None:
+			raise ConfigError(f"{path}.contactKn", None, "the stiffness is given in half", "give contactKn too, or remove contactKs")
 
 
 @dataclasses.dataclass
@@ -187,6 +142,10 @@ class Wall:
 	"""The rigid cylinder wall of ``boundary: wall``: one radius, moved by a servo that holds the mean radial stress."""
 
 	friction: float = shared("friction", "coefficient of friction on the wall; with grains the lesser of both acts", default=0.0, high=5)
+	kn: Optional[float] = ownKey("normal stiffness of the wall's own spring towards the grains, with ks; with grains both springs are in series", "N/m")
+	ks: Optional[float] = ownKey("shear stiffness of the same spring", "N/m")
+	emod: Optional[float] = ownKey("contact modulus of the wall's own, instead of kn and ks", "Pa")
+	kratio: Optional[float] = ownKey("kn/ks with emod", "", low=1.0, high=1000)
 	damping: float = shared(
 		"servo_damping",
 		"damping ratio of the radial servo, 1: critical for the wall's contacts alone; while the radius grows at v the wall carries "
@@ -198,6 +157,9 @@ class Wall:
 	maxVelocity: Optional[float] = key(
 		None, "largest velocity of the radius; none: 1e-3 radius/(d sqrt(rho/pressure)), an inertial number of 1e-3", "m/s", low=0, openLow=True
 	)
+
+	def check(self, path):
+		checkSprings(path, self)
 
 
 @dataclasses.dataclass
@@ -213,6 +175,13 @@ class Platens:
 		default=0.0,
 		high=5,
 	)
+	kn: Optional[float] = ownKey("normal stiffness of the platens' own spring towards the grains, with ks; with grains both springs are in series", "N/m")
+	ks: Optional[float] = ownKey("shear stiffness of the same spring", "N/m")
+	emod: Optional[float] = ownKey("contact modulus of the platens' own, instead of kn and ks", "Pa")
+	kratio: Optional[float] = ownKey("kn/ks with emod", "", low=1.0, high=1000)
+
+	def check(self, path):
+		checkSprings(path, self)
 
 
 @dataclasses.dataclass
@@ -246,6 +215,9 @@ class Consolidation:
 		"s",
 		low=0,
 		openLow=True,
+	)
+	maxFactor: float = key(
+		1.5, "likewise of the loops that are closed on the soil: what a platen or the membrane presses with over the stress asked for", "", low=1, high=1000, openLow=True
 	)
 	unbalanced: float = key(1e-3, "limit of the unbalanced force ratio, membrane counted", "", low=0, high=0.1, openLow=True, free=True)
 	tolerance: Optional[float] = key(
@@ -348,6 +320,9 @@ class Config:
 	boundary: str = key(
 		"membrane", "lateral boundary of the specimen: flexible membrane or rigid cylinder wall; the packing is the same", "", choices=("membrane", "wall")
 	)
+	stages: Optional[List[Stage]] = key(
+		None, "what is done with the specimen, in order; none: consolidation and shear, as the sections of these names say, which also have what a stage leaves out"
+	)
 	specimen: Specimen = section(Specimen, "the grains")
 	membrane: Membrane = section(Membrane, "the flexible membrane; particleRadius and placement also say the packing's radius")
 	wall: Wall = section(Wall, "the rigid wall, used with boundary: wall")
@@ -370,7 +345,6 @@ class Config:
 		config.given = frozenset(paths(values if isinstance(values, dict) else toDict(config)))
 		if config.membrane.placement == "centred" and config.membrane.particleRadius is None:
 			raise ConfigError("membrane.placement", "centred", "the soil's radius then follows from the particle's radius", "give membrane.particleRadius")
-		config.measure.checkWith(config.specimen, config.shear)
 		for name in PATHS:
 			path = getattr(config.specimen, name)
 			if path is not None:
@@ -378,4 +352,25 @@ class Config:
 				if not os.path.isfile(path):
 					raise ConfigError(f"specimen.{name}", path, "there is no such file", "correct the path")
 				setattr(config.specimen, name, path)
+		config._takeSizeOfBalls()
+		checkPlan(config)
+		config.measure.checkWith(config.specimen, config.shear)
 		return config
+
+	def _takeSizeOfBalls(self):
+		"""A specimen of balls that says no radius or height has those of the cylinder round them."""
+		keys = self.specimen
+		if keys.balls is not None and None in (keys.radius, keys.height):
+			found = balls.read(keys.balls, keys.ballsUnit)
+			around = balls.circumscribed(found.centres, found.radii)
+			keys.radius, keys.height = keys.radius or around.radius, keys.height or around.height
+
+	def springs(self, group):
+		"""Stiffness of a group's own springs: of "specimen" (the grains), "membrane", "platens" or "wall"; where a group has none of its own, the grains'.
+
+		:returns: :class:`hexmembrane.configuration.stiffness.Springs`.
+		"""
+		section = getattr(self, group)
+		if group == "membrane":
+			return Springs(section.contactKn, section.contactKs or section.contactKn) if section.contactKn else self.specimen.springs
+		return springsOf(section) or self.specimen.springs

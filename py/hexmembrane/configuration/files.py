@@ -16,9 +16,10 @@ import numpy
 import yaml
 
 import hexmembrane
-from hexmembrane.configuration.config import PATHS, Config
+from hexmembrane.configuration.config import Config
 from hexmembrane.configuration.reader import read
 from hexmembrane.configuration.schema import LONGEST_PATH, ConfigError, paths, plainText, toDict
+from hexmembrane.configuration.specimen import PATHS
 
 
 #: Files that a configuration may be made of, one the base of the next.

@@ -3,7 +3,8 @@
 
 A section is a dataclass whose fields are made by :func:`key`; each states its purpose, unit, default and range once, and
 that one statement checks the input, writes the resolved configuration and makes the table of keys in the documentation.
-A section may have a method ``check(path)`` for what concerns several keys at once.
+A section may have a method ``check(path)`` for what concerns several keys at once, and a class method ``prepared(values)`` for defaults that depend on
+what is given.
 """
 
 import csv
@@ -15,6 +16,7 @@ import pathlib
 import typing
 import unicodedata
 
+from hexmembrane.configuration import pfc
 
 #: Characters of a value that a message shows.
 _SHOWN = 200
@@ -22,15 +24,15 @@ _SHOWN = 200
 LONGEST_TEXT, LONGEST_PATH = 200, 4000
 #: What a number other than 0 is at least and at most in size, by unit: beyond it is a slip of the unit, and products of such numbers leave the range of floats.
 SIZES = {
-	"m": (1e-9, 1e4), "m/s": (1e-12, 1e4), "s": (1e-15, 1e9), "Pa": (1e-3, 1e15), "N": (1e-12, 1e12), "N m": (1e-18, 1e9), "kg/m3": (1e-3, 1e9), "": (1e-15, 1e9)
+	"m": (1e-9, 1e4), "m/s": (1e-12, 1e4), "s": (1e-15, 1e9), "Pa": (1e-3, 1e15), "N": (1e-12, 1e12), "N/m": (1e-6, 1e15), "N m": (1e-18, 1e9), "kg/m3": (1e-3, 1e9), "": (1e-15, 1e9)
 }  # fmt: skip
 
 
 class ConfigError(ValueError):
-	"""Bad configuration: the message names the key's path, its value, what is wrong and the fix."""
+	"""Bad configuration: the message names the key's path, its value, what is wrong and the fix; so do ``path``, ``value``, ``wrong`` and ``fix``."""
 
 	def __init__(self, path, value, wrong, fix):
-		self.path, self.value = path, value
+		self.path, self.value, self.wrong, self.fix = path, value, wrong, fix
 		super().__init__(f"{path} = {shown(value)}: {wrong}; fix: {fix}")
 
 
@@ -175,6 +177,8 @@ def _number(path, value, kind, spec):
 def _value(path, value, annotation, spec):
 	"""``value`` checked against the key's type and range, and converted."""
 	kind, optional = _bare(annotation)
+	if dataclasses.is_dataclass(kind):
+		return build(kind, value, path)
 	if value is None:
 		if optional:
 			return None
@@ -218,10 +222,14 @@ def build(cls, mapping, path=""):
 	for name in mapping:
 		if name in getattr(cls, "REPLACED", ()):
 			raise ConfigError(f"{at}{name}", mapping[name], "is no key any more", cls.REPLACED[name])
+		if name not in fields and (here := pfc.named(name, path)):
+			raise ConfigError(f"{at}{name}", mapping[name], "is PFC's name", f"here it is {here}")
 		if name not in fields:
 			raise ConfigError(
 				f"{at}{name}", mapping[name], "unknown key", f"{_guess(name, fields)}known keys are {', '.join(fields)}"
 			)
+	if hasattr(cls, "prepared"):
+		mapping = cls.prepared(mapping)
 	values = {}
 	for name, field in fields.items():
 		if "section" in field.metadata:
@@ -277,7 +285,7 @@ def table(cls, path=""):
 			continue
 		spec = field.metadata["key"]
 		kind, optional = _bare(hints[field.name])
-		kind = {float: "number", int: "whole number", bool: "true/false", str: "text"}.get(kind, "list of numbers")
+		kind = "list of stages" if _entry(hints[field.name]) else {float: "number", int: "whole number", bool: "true/false", str: "text"}.get(kind, "list of numbers")
 		default = "none" if field.default is None else str(field.default).lower() if kind == "true/false" else str(field.default)
 		if isinstance(field.default, float):
 			default = f"{field.default:g}"
@@ -285,11 +293,19 @@ def table(cls, path=""):
 	return rows
 
 
+def _entry(annotation):
+	"""The class of the entries of a list of sections, None for any other type."""
+	kind = next(iter(typing.get_args(_bare(annotation)[0])), None)
+	return kind if dataclasses.is_dataclass(kind) else None
+
+
 def markdown(cls):
-	"""The tables of keys for the documentation, one Markdown table for the top level and one for each section."""
+	"""The tables of keys for the documentation, one Markdown table for the top level, one for each section and one for the entries of each list of sections."""
 	inner = {field.name for field in sections(cls)}
 	parts = [("top level", [row for row in table(cls) if row[0].split(".")[0] not in inner])]
 	parts += [(f"`{field.name}`: {field.metadata['doc']}", table(field.metadata["section"])) for field in sections(cls)]
+	entries = {name: _entry(hint) for name, hint in typing.get_type_hints(cls).items()}
+	parts += [(f"an entry of `{name}`", table(entry)) for name, entry in entries.items() if entry]
 	lines = []
 	for title, rows in parts:
 		lines += [f"### {title}", "", "| key | unit | default | range | purpose |", "| --- | --- | --- | --- | --- |"]

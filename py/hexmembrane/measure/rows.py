@@ -80,6 +80,12 @@ def soilStress(measured, inertia):
 	return {"q": axial - radial, "p": (axial + 2 * radial) / 3, **columns}
 
 
+def deviator(measured):
+	"""Deviatoric stress of the soil [Pa] from what ``SoilMeasure.stress()`` gives."""
+	stress = measured["whole"]
+	return stress[2, 2] - 0.5 * (stress[0, 0] + stress[1, 1])
+
+
 def unbalanced(ids, contactForce):
 	"""Mean resultant force on moving bodies over the mean contact force, 1 without contacts; as YADE's ``unbalancedForce``."""
 	return float(numpy.linalg.norm(BodyArrays.forces(ids), axis=1).mean()) / contactForce if contactForce > 0 else 1.0
@@ -125,6 +131,7 @@ def row(scene, grains, reference, stage, elapsed):
 		"volume": volume,
 		"membrane_area": boundary.pressedArea(bottom, top),
 		"bonds_broken": boundary.brokenBonds(),
+		"loops_saturated": len(scene.saturated()),
 		"elapsed": round(elapsed, 2),
 		**_energies(energies, reference.energies),
 		"pressure_axial": loads.axialPush,

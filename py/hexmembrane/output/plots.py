@@ -3,7 +3,7 @@
 
 import pathlib
 
-from hexmembrane.output.records import read
+from hexmembrane.output.records import read, sheared
 
 _MISSING = "no shear rows in {}: nothing to plot; fix: shear the specimen first"
 
@@ -20,7 +20,7 @@ def plot(recordsPath, pngPath, title=""):
 	from matplotlib.figure import Figure
 
 	table = read(recordsPath)
-	rows = [i for i, stage in enumerate(table["stage"]) if stage == "shear"]
+	rows = sheared(table)
 	if not rows:
 		raise ValueError(_MISSING.format(recordsPath))
 

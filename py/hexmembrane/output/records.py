@@ -9,7 +9,7 @@ from hexmembrane.output import tables
 from hexmembrane.output.tables import Column
 
 COLUMNS = (
-	Column("stage", "", "consolidation or shear", text=True),
+	Column("stage", "", "consolidation or shear; of a list of stages also unloading, hold, pressure, with a number from the second of a kind on: shear-2", text=True),
 	Column("step", "", "YADE's step, O.iter"),
 	Column("time", "s", "YADE's time, O.time"),
 	Column("axial_strain", "-", "eps1 = (h0 - h)/h0 with h the distance of the platens' faces; compression positive"),
@@ -88,6 +88,7 @@ COLUMNS = (
 	Column("volume", "m3", "V, enclosed by the inner surface between the platens' faces"),
 	Column("membrane_area", "m2", "area on which the pressure acts (group 3), 2 pi r h of a rigid wall"),
 	Column("bonds_broken", "", "broken membrane bonds, 0 with a rigid wall"),
+	Column("loops_saturated", "", "closed loops of pressure and stress that stand at a limit (maxFactor of membrane and consolidation), so that what is asked for does not arrive"),
 	Column("elapsed", "s", "wall clock spent on the test so far, set-up of a resumed run not counted"),
 	Column("energy_elastic", "J", "elastic energy of the contacts; this and all energies: nan with output.energy: false", True),
 	Column("energy_membrane", "J", "elastic energy of the membrane: bonds, bending, self-contact; 0 with a rigid wall", True),
@@ -159,6 +160,11 @@ def read(path, damage=None):
 	:raises ValueError: no records file, or a row with a wrong number of cells.
 	"""
 	return tables.read(path, _TEXT, "records", damage)
+
+
+def sheared(table):
+	"""Numbers of the rows that belong to no consolidation."""
+	return [i for i, stage in enumerate(table["stage"]) if not stage.startswith("consolidation")]
 
 
 def markdown():

@@ -10,6 +10,7 @@ import pathlib
 import re
 
 from hexmembrane.configuration import ConfigError
+from hexmembrane.configuration.stages import KINDS
 from hexmembrane.output import records
 from hexmembrane.run import manifest
 from hexmembrane.run.manifest import KEPT, CheckpointError, Manifest
@@ -19,6 +20,7 @@ PICTURE, REPORT = "test.png", "report.html"
 #: What ``measure`` writes, and all that a test writes besides manifest, lock and checkpoints.
 _INSIDE = ("regions.csv", "profile.csv", "bands.csv", "fields.h5")
 _OWN = ("config.yaml", "packing.txt", RECORDS, PICTURE, REPORT, "vtk", *_INSIDE, "generated.yade.gz", "consolidated.yade.gz", "sheared.yade.gz", "checkpoint.json")
+_LABELLED = re.compile(rf"({'|'.join(KINDS)})(-[0-9]+)?\.yade\.gz")
 _NUMBERED = re.compile(r"checkpoint-([0-9]+)\.yade")
 #: Names under which files are written before they are renamed.
 _PARTS = ("part-*.yade", "part-*.yade.gz", "config.yaml.part", "packing.txt.*.part", "test.png.part", "report.html.part", "fields.h5.part", "manifest.json.part", "vtk/*.part")
@@ -48,11 +50,11 @@ class FolderError(RuntimeError):
 class Resumed:
 	"""A checkpoint that was found whole.
 
-	Attributes: ``checkpoint``; ``rows``, of its stage so far; ``last``, the last row (by column), None without rows; ``warnings``, texts.
+	Attributes: ``checkpoint``; ``count(stage)``, rows of a stage; ``rows``, of its own so far; ``last``, the last row (by column), None without rows; ``warnings``, texts.
 	"""
 
 	def __init__(self, checkpoint, kept, warnings):
-		self.checkpoint, self.warnings = checkpoint, warnings
+		self.checkpoint, self.warnings, self.count = checkpoint, warnings, kept.count
 		self.rows, self.last = kept.count(checkpoint.stage), kept.last()
 
 
@@ -75,16 +77,22 @@ class Store:
 		:raises CheckpointError: its manifest is damaged or of another version.
 		"""
 		folder = pathlib.Path(folder)
+		cls.requireFree(folder)
 		if (folder / manifest.NAME).exists():
-			found = manifest.read(folder)
-			if found.checkpoints or found.files:
-				raise ConfigError("--out", str(folder), "holds a test already", "choose another folder, empty this one, or give --resume")
 			cls(folder).removeLeft()
-		else:
-			_refuseForeign(folder)
 		made = cls(folder)
 		made.write()
 		return made
+
+	@staticmethod
+	def requireFree(folder):
+		"""Check that a test may begin in a folder, which need not exist; nothing is changed. :raises ConfigError, CheckpointError: as :meth:`begin`."""
+		folder = pathlib.Path(folder)
+		if not (folder / manifest.NAME).exists():
+			return _refuseForeign(folder)
+		found = manifest.read(folder)
+		if found.checkpoints or found.files:
+			raise ConfigError("--out", str(folder), "holds a test already", "choose another folder, empty this one, or give --resume")
 
 	@classmethod
 	def existing(cls, folder):
@@ -194,7 +202,7 @@ class Store:
 
 
 def _refuseForeign(folder):
-	for name in _OWN:
+	for name in (*_OWN, *sorted(path.name for path in folder.glob("*.yade.gz") if _LABELLED.fullmatch(path.name))):
 		path = folder / name
 		if path.is_dir() and not any(path.iterdir()):
 			continue

@@ -11,7 +11,10 @@ import os
 import pathlib
 import shutil
 
+import numpy
+
 from hexmembrane.configuration import ConfigError
+from hexmembrane.configuration.stages import CONSOLIDATION, plan
 from hexmembrane.run.progress import clock
 from hexmembrane.scene import timestep
 
@@ -29,6 +32,8 @@ MOST_STEPS = 10**9
 MOST_THREADS = 4
 #: Least kn/(p d): grains overlap by about d over this number, and below it the specimen is no longer one of grains.
 LEAST_LEVEL = 10
+#: Strain of a way to a deviatoric stress, which is not known before.
+_UNKNOWN = 0.005
 #: The pressure's rise of a test that says none, in d sqrt(rho/p).
 RISE = 30
 
@@ -101,13 +106,14 @@ class Estimate:
 		"""
 		particles, particleRadius = _membrane(config, float(radii.min()))
 		step = _step(config, radii, particleRadius)
-		keys, shear = config.consolidation, config.shear
-		rise = (keys.rampTime or RISE * timestep.inertialTime(radii, config.specimen.density, keys.pressure)) / step
-		consolidation = min(2.5 * rise + config.output.consolidationSteps, keys.maxSteps)
-		sheared = (shear.strain + shear.rampStrain) * config.specimen.height / (shear.velocity * step)
+		stages = plan(config)
+		rises = [_changeTime(config, radii, stage) / step for stage in stages if stage.kind == CONSOLIDATION]
+		rise = max(rises)
+		consolidation = sum(min(2.5 * steps + config.output.consolidationSteps, config.consolidation.maxSteps) for steps in rises)
+		sheared = _seconds(config, radii, stages) / step
 		spheres = len(radii) + particles
-		frames = config.output.records / config.output.vtkEvery + 2 if config.output.vtkEvery else 0
-		rows = config.output.records + consolidation / config.output.consolidationSteps
+		frames = sum(stage.records for stage in stages) / config.output.vtkEvery + 2 * (len(stages) - 1) if config.output.vtkEvery else 0
+		rows = sum(stage.records for stage in stages) + consolidation / config.output.consolidationSteps
 		return cls(
 			grains=len(radii),
 			membrane=particles,
@@ -168,18 +174,44 @@ def requireThreads(config, machine=None):
 		)
 
 
-def requireStiffness(config):
+def requireStiffness(config, radii):
 	"""Check that the contacts carry the pressure.
 
+	:param radii: of the grains [m].
 	:raises ConfigError: kn/(p d) is below LEAST_LEVEL.
 	"""
-	emod, pressure = config.specimen.emod, config.consolidation.pressure
-	level = timestep.stiffnessLevel(emod, pressure)
+	springs, pressure = config.specimen.springs, max(stage.pressure for stage in plan(config))
+	level = timestep.levelOf(springs, radii, pressure)
 	if level < LEAST_LEVEL:
+		value, unit = (springs.kn, "N/m") if springs.direct else (springs.emod, "Pa")
 		raise ConfigError(
-			"specimen.emod", emod, f"gives kn/(p d) = {level:.3g} at {pressure:g} Pa, so soft that grains pass through one another; {LEAST_LEVEL} is the least",
-			f"at least {4 * pressure * LEAST_LEVEL / math.pi:.3g} Pa, {4 * pressure * 300 / math.pi:.3g} Pa for small overlaps",
+			config.specimen.stiffnessKey, value,
+			f"gives kn/(p d) = {level:.3g} at {pressure:g} Pa, so soft that grains pass through one another; {LEAST_LEVEL} is the least",
+			f"at least {value * LEAST_LEVEL / level:.3g} {unit}, {value * 300 / level:.3g} {unit} for small overlaps",
 		)  # fmt: skip
+
+
+def improbable(config, radii):
+	"""Lines about sizes and loads that a laboratory's test does not have: most often a slip of the unit.
+
+	:param radii: of the grains [m].
+	"""
+	keys, mean = config.specimen, float(numpy.mean(radii))
+	found = [
+		("specimen.radius", keys.radius, "m", 2e-3, 0.5),
+		("specimen.height", keys.height, "m", 4e-3, 2.0),
+		("the grains' mean radius", mean, "m", 1e-6, 0.05),
+		("specimen.density", keys.density, "kg/m3", 500.0, 12000.0),
+		("consolidation.pressure", config.consolidation.pressure, "Pa", 500.0, 1e8),
+		("shear.velocity", config.shear.velocity, "m/s", 0.0, 2.0),
+		("numerics.damping", config.numerics.damping, "", 0.0, 0.95),
+	]
+	return [
+		f"WARNING: {name} = {value:.4g} {unit}".rstrip() + f" is improbable, tests have {low:g} to {high:g}"
+		+ (f"; in mm it would be {value / 1000:g} m" if unit == "m" and value > high else "") + "; fix: see the unit, all are SI"
+		for name, value, unit, low, high in found
+		if not low <= value <= high
+	]  # fmt: skip
 
 
 def requireTravel(config):
@@ -187,10 +219,31 @@ def requireTravel(config):
 
 	:raises ConfigError: it is not.
 	"""
-	thickness, share = config.platens.thickness, {"top": 1.0, "both": 0.5}[config.shear.moving]
+	moving = [stage for stage in plan(config) if stage.straining]
+	thickness, share = config.platens.thickness, max((max(map(abs, stage.velocities)) / stage.speed for stage in moving), default=0.0)
 	travel = share * config.shear.strain * config.specimen.height
 	if thickness is not None and thickness <= travel:
 		raise ConfigError("platens.thickness", thickness, f"is no more than the {travel:.4g} m that a platen travels", f"more than {travel:.4g} m, or leave it out")
+
+
+def _changeTime(config, radii, stage):
+	"""Time of the stage's change of pressure, or of its standing platens [s]."""
+	return stage.time or RISE * timestep.inertialTime(radii, config.specimen.density, max(stage.pressure, stage.before))
+
+
+def _seconds(config, radii, stages):
+	"""Time in the test [s] of the stages that are no consolidation, nearly."""
+	total, at = 0.0, 0.0
+	for stage in stages:
+		if stage.kind == CONSOLIDATION:
+			at = 0.0
+		elif not stage.straining:
+			total += _changeTime(config, radii, stage)
+		else:
+			end = at + stage.direction * _UNKNOWN if stage.strain is None else stage.strain
+			total += (abs(end - at) + config.shear.rampStrain) * config.specimen.height / stage.speed
+			at = end
+	return total
 
 
 def _membrane(config, smallest):
@@ -214,7 +267,7 @@ def _step(config, radii, particleRadius):
 		return numerics.safety * grains
 	mass = timestep.sphereMass(particleRadius, keys.density)
 	bonds = 2 * math.sqrt(mass / (6 * keys.young * keys.thickness / (math.sqrt(3) * (1 - keys.poisson))))
-	membrane = timestep.membraneStep(specimen, keys.density, float(radii.max()), particleRadius, bonds)
+	membrane = timestep.membraneStep(specimen.springs, config.springs("membrane"), keys.density, float(radii.max()), particleRadius, bonds)
 	return numerics.safety * min(grains, math.sqrt(timestep.densityScaling(keys.densityScaling, grains, membrane)) * membrane)
 
 

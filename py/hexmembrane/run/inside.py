@@ -41,17 +41,22 @@ class Inside:
 		keys = self.keys
 		return {"regions": keys.regions, "profile": keys.slices > 0, "bands": keys.bands}
 
-	def row(self, scene, record, number):
-		"""Measure at a row of shear; ``record``: the row, ``number``: its number, 0 at the start."""
+	def row(self, scene, record, number, nominal):
+		"""Measure at a row of what follows the consolidation.
+
+		:param record: the row. :param number: its number since then, 0 at the start.
+		:param nominal: (strain meant at the row before, at this one, whether the stage ends), see :meth:`hexmembrane.run.stage.Stage.nominal`.
+		"""
+		*self._nominal, last = nominal
 		if not (self.keys.local or any(self._wanted.values())):
 			return
 		self._prepare(scene, record)
-		if number % self.keys.every == 0 or number == self.config.output.records:
+		if number % self.keys.every == 0 or last:
 			if self.keys.regions:
 				self._regionRows(scene, record, number)
 			if self.keys.slices:
 				self._profileRows(scene, record)
-		if self.keys.local and (number == 0 or self._isDue(number)):
+		if self.keys.local and (number == 0 or self._isDue()):
 			self._localStep(scene, record, number)
 
 	def position(self):
@@ -113,15 +118,13 @@ class Inside:
 			raise ValueError(f"measure.spacing = {self.keys.spacing:g}: no region of radius {radius:.3g} m is whole inside the specimen; fix: a smaller measure.radius")
 		return np.array(found)
 
-	def _isDue(self, number):
+	def _isDue(self):
 		"""Whether a step ends or a kept strain is reached between the row before and this one."""
-		keys, shear = self.keys, self.config.shear.strain
-		before, now = (shear * k / self.config.output.records for k in (number - 1, number))
-		return math.floor(now / keys.step + 1e-6) > math.floor(before / keys.step + 1e-6) or self._isKept(number)
+		before, now = self._nominal
+		return math.floor(now / self.keys.step + 1e-6) > math.floor(before / self.keys.step + 1e-6) or self._isKept()
 
-	def _isKept(self, number):
-		shear, small = self.config.shear.strain, 1e-9
-		before, now = (shear * k / self.config.output.records for k in (number - 1, number))
+	def _isKept(self):
+		(before, now), small = self._nominal, 1e-9
 		return any(before + small < strain <= now + small for strain in self.keys.strains or ())
 
 	def _localStep(self, scene, record, number):
@@ -131,7 +134,7 @@ class Inside:
 			if self.keys.bands and increment >= self.keys.step / 2:
 				self._bandRows(scene, record, increment, x, u, volumes)
 		self._row = number
-		if self._fields and self._isKept(number):
+		if self._fields and self._isKept():
 			bottom, top = scene.faces()
 			state = {"row": number, "step": record["step"], "axial_strain": record["axial_strain"], "increment": increment}
 			state.update(bottom=bottom, top=top, radius=record["mean_radius"])

@@ -19,14 +19,14 @@ import hexmembrane
 
 NAME = "manifest.json"
 #: Of the manifest itself.
-FORMAT = 1
+FORMAT = 2
 #: Raised when states of before cannot be read any more. 2: contacts of the compact tier by the model's own list of fields.
 STATES = 2
 #: Checkpoints that are kept.
 KEPT = 2
-STAGES = ("generated", "consolidation", "shear")
+_STAGE = re.compile(r"generated|[a-z]{1,20}(-[0-9]{1,6})?")
 _ENERGIES = ("elastic", "membrane", "kinetic", "friction", "damping", "work")
-_STATE = re.compile(r"(generated|consolidated|sheared)\.yade\.gz|checkpoint-[0-9]{1,18}\.yade")
+_STATE = re.compile(r"[a-z]{1,20}(-[0-9]{1,6})?\.yade\.gz|checkpoint-[0-9]{1,18}\.yade")
 _SEAL = b',\n "sha256": "'
 _BEFORE = "checkpoint.json"
 _LARGEST = 2**63
@@ -60,9 +60,9 @@ class Checkpoint:
 	"""From where a test goes on.
 
 	:param state: name of its state.
-	:param stage: one of STAGES.
+	:param stage: label of the stage, 'generated' before the first.
 	:param step: YADE's step.
-	:param begun: step and time [s] at which the stage began.
+	:param begun: step, time [s] and axial strain at which the stage began.
 	:param records: size and SHA-256 of records.csv at that moment.
 	:param frames: (time [s], number) of each VTK frame.
 	:param reference: fields of :class:`hexmembrane.measure.rows.Reference`.
@@ -235,12 +235,13 @@ class _Reader:
 		self.keys(key, value, [field.name for field in dataclasses.fields(Checkpoint)])
 		if not isinstance(value["state"], str) or value["state"] not in states:
 			self.wrong(f"{key}.state", value["state"], "is not one of the states")
-		if value["stage"] not in STAGES:
-			self.wrong(f"{key}.stage", value["stage"], f"is no stage, they are {', '.join(STAGES)}")
+		if not isinstance(value["stage"], str) or not _STAGE.fullmatch(value["stage"]):
+			self.wrong(f"{key}.stage", value["stage"], "is no label of a stage, such as consolidation, shear, unloading-2")
 		self.whole(f"{key}.step", value["step"])
-		self.keys(f"{key}.begun", value["begun"], ("step", "time"))
+		self.keys(f"{key}.begun", value["begun"], ("step", "time", "strain"))
 		self.whole(f"{key}.begun.step", value["begun"]["step"])
 		self.number(f"{key}.begun.time", value["begun"]["time"], 0)
+		self.number(f"{key}.begun.strain", value["begun"]["strain"])
 		if value["begun"]["step"] > value["step"]:
 			self.wrong(f"{key}.begun.step", value["begun"]["step"], f"is after the checkpoint's step {value['step']}")
 		self.frames(f"{key}.frames", value["frames"])

@@ -10,8 +10,9 @@ from yade import O
 from hexmembrane import configuration
 from hexmembrane.configuration import Config, ConfigError, toDict
 from hexmembrane.configuration.schema import freeKeys
+from hexmembrane.configuration.stages import plan
 from hexmembrane.output.plots import plot
-from hexmembrane.run import checkpoints, estimate, progress, stages
+from hexmembrane.run import checkpoints, estimate, from_state, progress, stages
 from hexmembrane.run.checkpoints import FolderError, Store
 from hexmembrane.run.lock import FolderLock
 from hexmembrane.run.manifest import CheckpointError
@@ -20,7 +21,8 @@ from hexmembrane.run.states import Image
 from hexmembrane.scene import accuracy, builder, specimen
 from hexmembrane.scene.handles import Scene
 
-STAGES = ("specimen", "boundary", "consolidation", "shear")
+#: What comes before a test's stages.
+BEFORE = ("specimen", "boundary")
 
 
 def _madeFolder(out):
@@ -77,16 +79,6 @@ def _goOn(config, store, tell):
 	return resumed
 
 
-def _sameState(config):
-	"""Check that the state in ``O`` has the configuration's lateral boundary and was consolidated at its pressure."""
-	boundary = Scene().lateralBoundary
-	if boundary.name != config.boundary:
-		raise ConfigError("boundary", config.boundary, f"the state has a {boundary.name}", f"give boundary: {boundary.name}")
-	wanted, pressure = config.consolidation.pressure, Scene().pressure
-	if abs(pressure - wanted) > 1e-9 * wanted:
-		raise ConfigError("consolidation.pressure", wanted, f"the state was consolidated at {pressure} Pa", "give that pressure")
-
-
 def _wantOwnSettings(config):
 	"""A state has the settings of the test that made it: none may be left to ``accuracy``."""
 	if config.accuracy is not None and (left := accuracy.openKeys(config)):
@@ -103,7 +95,9 @@ def prepare(config, out, say):
 	if config.accuracy is not None:
 		chosen = accuracy.choose(config, radii)
 		say(f"accuracy {100 * config.accuracy:g} %: " + ", ".join(f"{key} = {value:g}" for key, value in chosen.items()))
-	estimate.requireStiffness(config)
+	for line in estimate.improbable(config, radii):
+		say(line)
+	estimate.requireStiffness(config, radii)
 	needs = estimate.Estimate.of(config, radii)
 	needs.require(config, estimate.Machine.here(out))
 	say(needs.line())
@@ -113,25 +107,52 @@ def prepare(config, out, say):
 	return budget
 
 
-def run(config, out, resume=False, until="shear", start=None, quiet=False):
+def check(config, out, start=None, say=progress.tell):
+	"""Check all that can be checked before a test and say what it would make; nothing is made.
+
+	:raises ConfigError, CheckpointError: as :func:`run`.
+	"""
+	own = None
+	if start is not None:
+		_wantOwnSettings(config)
+		own = from_state.adopt(config, start, say)
+		stages.load(start)
+		from_state.require(config, start)
+	prepare(config, out, say)
+	Store.requireFree(out)
+	keys, radii = config.specimen, 1e3 * specimen.plannedRadii(config)
+	say(
+		f"specimen: {len(radii)} grains of radius {radii.min():.4g} to {radii.max():.4g} mm in {2e3 * keys.radius:.4g} x {1e3 * keys.height:.4g} mm"
+		+ (f", porosity {keys.porosity:g} asked for" if keys.made and start is None else "")
+	)
+	say(f"boundary: {config.boundary}, tier {config.tier}")
+	for planned in plan(config):
+		if start is None or planned.chain:
+			say(f"{planned.label}: {planned.describe()}")
+	say(f"nothing was made; the same command without --check makes it in {pathlib.Path(out)}" + (f", from {start}" if own or start else ""))
+
+
+def run(config, out, resume=False, until=None, start=None, quiet=False):
 	"""Run the stages of a test into a folder.
 
 	:param config: checked configuration.
 	:param out: folder, made if need be.
 	:param resume: go on from the folder's last checkpoint.
-	:param until: last stage to run, one of STAGES.
+	:param until: last stage to run: "specimen", "boundary" or the label of a stage; None: all.
 	:param start: a consolidated state (``consolidated.yade.gz`` of another test) to shear instead of making a specimen.
 	:param quiet: print nothing.
 	:returns: the :class:`hexmembrane.run.stages.TriaxialTest`, None when only the specimen was made.
 	:raises ConfigError, CheckpointError, LockError, FolderError, StageError, ValueError: each with the fix.
 	"""
-	if until not in STAGES:
-		raise ConfigError("--until", until, "is no stage", f"use {', '.join(STAGES)}")
+	known = (*BEFORE, *(planned.label for planned in plan(config)))
+	if until is not None and until not in known:
+		raise ConfigError("--until", until, "is no stage", f"use {', '.join(known)}")
 	if resume and start is not None:
 		raise ConfigError("--from", str(start), "a resumed test starts from its own checkpoint", "leave out one of --from and --resume")
+	settled, own = [], None
 	if start is not None:
 		_wantOwnSettings(config)
-	settled = []
+		own = from_state.adopt(config, start, settled.append)
 	budget = prepare(config, out, settled.append)
 	out = _madeFolder(out)
 
@@ -146,14 +167,14 @@ def run(config, out, resume=False, until="shear", start=None, quiet=False):
 	try:
 		with FolderLock(out):
 			store = _storeOf(out, resume)
-			return _run(config, budget, settled, store, until, start, quiet, say, tell)
+			return _run(config, budget, settled, store, until, start, own, quiet, say, tell)
 	except OSError as error:
 		if error.errno is None:
 			raise  # it says what is wrong
 		raise FolderError(error, out, store is not None and store.begun) from None
 
 
-def _run(config, budget, settled, store, until, start, quiet, say, tell):
+def _run(config, budget, settled, store, until, start, own, quiet, say, tell):
 	out, resume = store.folder, store.begun
 	if not resume:
 		for line in settled:
@@ -165,14 +186,15 @@ def _run(config, budget, settled, store, until, start, quiet, say, tell):
 		test = stages.TriaxialTest(config, out, quiet, store, resumed)
 	elif start is not None:
 		stages.load(start)
-		_sameState(config)
+		from_state.require(config, start)
 		builder.setTier(config)
+		from_state.apply(config, own, say)
 		O.trackEnergy = config.output.energy
 		stages.checkRows(config)
 		configuration.save(config, out / "config.yaml", budget=budget.asDict())
 		store.seal("config.yaml")
 		test = stages.TriaxialTest(config, out, quiet, store)
-		test.beginShear()
+		test.begin(next(k for k, planned in enumerate(test.plan) if planned.chain))
 		test.checkpoint()
 	else:
 		configuration.save(config, out / "config.yaml", budget=budget.asDict())
@@ -206,14 +228,14 @@ def _report(out, say):
 
 
 def _stages(test, until, say):
-	if test.stage in ("generated", "consolidation"):
-		test.consolidate()
-	if until == "shear":
-		test.shear()
+	test.proceed(until)
+	if until is None or test.plan[[planned.label for planned in test.plan].index(until)].chain:
 		picture = test.out / checkpoints.PICTURE
 		plot(test.records.path, picture, test.config.title)
 		say(f"wrote {test.records.path}, {picture}" + (f" and {test.frames.folder}" if test.frames.written else ""))
-		if test.config.output.report:
+		if test.config.output.report and test.config.stages is None:
 			_report(test.out, say)
+		elif test.config.output.report:
+			say(f"no {checkpoints.REPORT}: its page shows one consolidation and one shear, and this test has a list of stages")
 	say(f"done in {clock(test.elapsed())}")
 	return test

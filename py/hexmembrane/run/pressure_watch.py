@@ -14,10 +14,11 @@ class PressureWatch:
 
 	:param keys: the configuration's shear section.
 	:param name: of the lateral boundary.
+	:param stage: label of the stage.
 	"""
 
-	def __init__(self, keys, name):
-		self.keys, self.name, self._told = keys, name, False
+	def __init__(self, keys, name, stage="shear"):
+		self.keys, self.name, self.stage, self._told = keys, name, stage, False
 
 	def strayed(self, row):
 		"""What is to be said of a row: the first time that it is beyond the tolerance, or every time where that stops the test; else ''."""
@@ -31,12 +32,12 @@ class PressureWatch:
 		)
 
 	def summary(self, path):
-		"""The largest distance in all rows of the shear, in words.
+		"""The largest distance in all rows of the stage, in words.
 
 		:param path: records.csv; it has the rows from before a resume too.
 		"""
 		table = records.read(path)
-		rows = [i for i, stage in enumerate(table["stage"]) if stage == "shear"]
+		rows = [i for i, stage in enumerate(table["stage"]) if stage == self.stage]
 		worst = max(rows, key=lambda i: abs(table["sigma3_distance"][i]))
 		distance = float(table["sigma3_distance"][worst])
 		text = f"{100 * distance:+.2g} % from its target at most, at {100 * table['axial_strain'][worst]:.2f} %"

@@ -1,52 +1,40 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The stages of a test on the scene in ``O``: consolidation and shear, with records, VTK frames and checkpoints in one folder.
+"""The stages of a test on the scene in ``O``, in the order of its plan, with records, VTK frames and checkpoints in one folder.
 
 Python is not in the loop of a step: YADE runs in chunks of steps between rows. After each checkpoint the test goes on from the
 saved state itself in the reference tier, where YADE's collider makes its lists anew after a load. A resumed run and one that was never
 stopped take the same steps for that reason, bit by bit on one thread.
 """
 
-import math
 import pathlib
 import time
 
 from yade import BodyArrays, O
 
-from hexmembrane.configuration import ConfigError
-from hexmembrane.configuration.config import restTolerance
+from hexmembrane.configuration.stages import CONSOLIDATION, plan
 from hexmembrane.measure import rows
 from hexmembrane.output.frames import Frames
 from hexmembrane.output.records import Records
 from hexmembrane.run.checkpoints import RECORDS, Store
+from hexmembrane.run.consolidation import Consolidation
 from hexmembrane.run.inside import Inside
 from hexmembrane.run.manifest import Checkpoint, Entry
-from hexmembrane.run.pressure_watch import PressureWatch
-from hexmembrane.run.progress import Progress
+from hexmembrane.run.stage import StageError
 from hexmembrane.run.states import Image, load
-from hexmembrane.scene import timestep
-from hexmembrane.scene.builder import checkTimeStep
+from hexmembrane.run.straining import Resting, Straining, checkRows
 from hexmembrane.scene.handles import Scene
-from hexmembrane.scene.timestep import QUASISTATIC
 
-#: Parts that the pressure's smooth rise is divided into; each is 1 % of the time.
-RAMP_PARTS = 100
-#: Share of the pressure that the ramp begins with: servos hold no stress of 0.
-_FIRST = 0.01
+__all__ = ["StageError", "TriaxialTest", "checkRows", "load"]
+
 #: Steps that YADE is asked for at once: a signal waits for their end. A multiple of the usual numerics.substeps.
 _AT_ONCE = 5000
-#: Share of the height that consolidation may take, for what is checked before it.
-_SHORTER = 0.1
-
-
-class StageError(RuntimeError):
-	"""A stage that cannot reach its target, or that YADE stopped; a checkpoint of the last sound state is in the folder."""
 
 
 class TriaxialTest:
 	"""A test whose specimen and lateral boundary are in ``O`` (see :func:`hexmembrane.scene.builder.build`).
 
-	Attributes: ``config``, ``out``, ``quiet`` (see below); ``scene`` and ``grains`` (handles), ``stage`` (name), ``rowCount`` (rows of the stage so
-	far), ``lastRow`` (a dict by column of the records), ``stageStart`` (step and time), ``reference`` (what strains count from), ``records``, ``frames``,
+	Attributes: ``config``, ``out``, ``quiet`` (see below); ``scene`` and ``grains`` (handles), ``plan`` (its stages), ``stage`` (label), ``rowCount`` (rows of the
+	stage so far), ``lastRow`` (a dict by column of the records), ``stageStart`` (step, time, strain), ``reference`` (what strains count from), ``records``, ``frames``,
 	``inside`` (what the configuration's ``measure`` asks for).
 
 	:param config: checked configuration.
@@ -59,11 +47,12 @@ class TriaxialTest:
 	def __init__(self, config, out, quiet=False, store=None, resumed=None):
 		self.config, self.out, self.quiet = config, pathlib.Path(out), quiet
 		self.store = Store(out) if store is None else store
-		self.scene = Scene()
+		self.scene, self.plan = Scene(), plan(config)
 		self.grains = rows.Grains.of(self.scene.grainIds())
+		self._earlierRows, self._told = 0, set()
 		self.stage, self.rowCount, self.lastRow, self._earlier = "generated", 0, None, 0.0
 		if resumed is None:
-			self.stageStart, self.reference = {"step": O.iter, "time": O.time}, rows.Reference.of(self.scene)
+			self.stageStart, self.reference = {"step": O.iter, "time": O.time, "strain": 0.0}, rows.Reference.of(self.scene)
 			self.frames, self.records = Frames(self.out), Records(self.out / RECORDS)
 			self.inside = Inside(config, self.out)
 		else:
@@ -74,24 +63,39 @@ class TriaxialTest:
 		checkpoint = resumed.checkpoint
 		self.stage, self.rowCount, self.lastRow, self._earlier = checkpoint.stage, resumed.rows, resumed.last, checkpoint.elapsed
 		self.stageStart, self.reference = checkpoint.begun, rows.Reference(**checkpoint.reference)
+		self._earlierRows = self._countEarlier(resumed.count)
 		self.frames, self.records = Frames(self.out, checkpoint.frames), Records(self.out / RECORDS, checkpoint.records.size)
 		self.inside = Inside(self.config, self.out, checkpoint.inside)
 		self.scene.tellCheckpoint(self.out / checkpoint.state)
 
-	# What both stages share
+	# What all stages share
 
 	def elapsed(self):
 		"""Wall clock of the test so far [s]."""
 		return self._earlier + time.monotonic() - self._clock
 
-	def _enter(self, stage):
+	def enter(self, stage):
 		"""Begin a stage: strains, displacements and energies count from here."""
 		if O.trackEnergy and not O.energy.items():
 			self.advance(1)  # energies are known after a step
-		self.stage, self.rowCount = stage, 0
-		self.stageStart = {"step": O.iter, "time": O.time}
 		self.reference = rows.Reference.of(self.scene)
 		BodyArrays.setReference()
+		self._earlierRows = 0
+		self._enter(stage)
+
+	def enterNext(self, stage):
+		"""Begin a stage whose strains count from where those of the stage before do."""
+		self._earlierRows += self.rowCount
+		self._enter(stage)
+
+	def _enter(self, stage):
+		self.stage, self.rowCount = stage, 0
+		self.stageStart = {"step": O.iter, "time": O.time, "strain": self.strain()}
+
+	def _countEarlier(self, count):
+		"""Rows of the stages before the present one that strains count from; ``count(label)``: rows of a stage."""
+		chain = next((planned.chain for planned in self.plan if planned.label == self.stage), ())
+		return sum(count(label) for label in chain[:-1])
 
 	def advance(self, steps):
 		"""Run YADE for a number of steps.
@@ -130,13 +134,13 @@ class TriaxialTest:
 			)
 		self.records.append(self.lastRow)
 		self.rowCount += 1
-		if self.stage == "shear":
+		if self.present >= 0 and self.plan[self.present].chain:
 			self._measureInside()
 		return self.lastRow
 
 	def _measureInside(self):
 		try:
-			self.inside.row(self.scene, self.lastRow, self.rowCount - 1)
+			self.inside.row(self.scene, self.lastRow, self._earlierRows + self.rowCount - 1, self.stageAt(self.present).nominal())
 		except (RuntimeError, ValueError) as error:
 			raise StageError(f"measure, in step {O.iter}: {self._torn()}{error}") from None
 
@@ -159,7 +163,8 @@ class TriaxialTest:
 				self.scene = Scene()
 		self.scene.tellCheckpoint(self.out / state)
 
-	def _show(self, progress, done):
+	def show(self, progress, done):
+		"""Show how far the stage is, with its last row."""
 		row = self.lastRow
 		progress.update(
 			done,
@@ -169,226 +174,75 @@ class TriaxialTest:
 			unbalanced=f"{row['unbalanced']:.1e}",
 		)
 
-	# Consolidation
-
-	def consolidate(self):
-		"""Raise confining pressure and axial stress together and smoothly, then wait for rest.
-
-		Ends when the unbalanced force ratio is below its limit and transmitted pressure (main body) and axial stress (of the soil's
-		middle half, or the platen's) are both within the tolerance of the pressure. Leaves ``consolidated.yade.gz``; the start is a checkpoint.
-
-		:raises StageError: not at rest after maxSteps, the state it reached is the checkpoint; or a servo did not reach its target within
-			timeLimit, the checkpoint is the last one before.
-		"""
-		keys = self.config.consolidation
-		rampTime = keys.rampTime or 30 * self._inertialTime()
-		with Progress("consolidation", self.quiet) as progress:
-			if self.stage == "generated":
-				self._beginConsolidation()
-			self.scene.setTimeLimit(keys.timeLimit)
-			while not (self.rowCount and self._atRest(rampTime)):
-				steps = O.iter - self.stageStart["step"]
-				if steps >= keys.maxSteps:
-					self.checkpoint()
-					raise StageError(self._restless(steps))
-				self._rampedChunk(rampTime, min(self.config.output.consolidationSteps, keys.maxSteps - steps))
-				self.row()
-				self._show(progress, self._consolidationDone(rampTime))
-				checkTimeStep(self.config, self.scene, progress.say)
-				self._maybeCheckpoint()
-			progress.update(1.0, porosity=f"{self.lastRow['porosity']:.4f}", coordination=f"{self.lastRow['coordination']:.2f}")
-			progress.say(
-				f"consolidated after {O.iter - self.stageStart['step']} steps: unbalanced {self.lastRow['unbalanced']:.2e}, "
-				f"transmitted {1e-3 * self.lastRow['sigma3_transmitted_group3']:.2f} kPa of {1e-3 * keys.pressure:g} kPa"
-			)
-		self.beginShear()
-		self.checkpoint("consolidated")
-
-	def _beginConsolidation(self):
-		keys = self.config.consolidation
-		self.stage = "consolidation"
-		self.scene.setPressure(_FIRST * keys.pressure)
-		speed = QUASISTATIC / self._inertialTime()
-		self.scene.topDrive.maxVelocity = speed * self.reference.height
-		self.scene.lateralBoundary.setMaxVelocity(self.config.wall.maxVelocity or speed * self.reference.radius)
-		grains, platens = self.config.specimen.friction, self.config.platens.friction
-		smoother = self.config.platens.consolidationFriction
-		self.scene.setFriction(grains if keys.friction is None else keys.friction, platens if smoother is None else smoother)
-		self._enter("consolidation")
-		self.checkpoint()
-
-	def _inertialTime(self):
-		"""d sqrt(rho/sigma3) [s]: a strain rate times this is the inertial number."""
-		return timestep.inertialTime(self.grains.meanDiameter / 2, self.grains.density, self.config.consolidation.pressure)
-
-	def _rampedChunk(self, rampTime, steps):
-		"""Run ``steps`` steps, the pressure following its smooth rise P (1 - cos(pi t/T))/2, never below _FIRST of P."""
-		target = self.config.consolidation.pressure
-		end = O.iter + steps
-		while O.iter < end:
-			share = min(1.0, (O.time - self.stageStart["time"]) / rampTime)
-			self.scene.setPressure(target * max(_FIRST, (1 - math.cos(math.pi * share)) / 2))
-			part = end - O.iter
-			if share < 1:
-				part = min(part, max(1, math.ceil(rampTime / (RAMP_PARTS * O.dt))))
-			self.advance(part)
-
-	def _errors(self):
-		"""Relative distances: of transmitted pressure and soil's axial stress from the pressure, of the platen's force from what it is to carry."""
-		target, row, drive = self.config.consolidation.pressure, self.lastRow, self.scene.topDrive
-		errors = {
-			"transmitted pressure": abs(row["sigma3_transmitted_group3"] / self.scene.lateralBoundary.pressure - 1),
-			"platen's force": abs(row["platen_force_top"] / (drive.stress * self.scene.endArea()) - 1),
-		}
-		if self.scene.axialServo:
-			errors["soil's axial stress"] = abs(row["soil_axial_middle"] / target - 1)
-		if self.scene.radialServo:
-			errors["soil's radial stress"] = abs(row["soil_radial_middle"] / target - 1)
-		return errors
-
-	def _tolerance(self):
-		return restTolerance(self.config.consolidation.tolerance, self.config.boundary, self.config.membrane.pressureTime)
-
-	def _atRest(self, rampTime):
-		keys = self.config.consolidation
-		ramped = O.time - self.stageStart["time"] >= rampTime and self.lastRow["sigma3_target"] == keys.pressure
-		return ramped and self.lastRow["unbalanced"] < keys.unbalanced and max(self._errors().values()) < self._tolerance()
-
-	def _consolidationDone(self, rampTime):
-		"""Share of the consolidation done: half for the ramp, half for the decades of unbalanced force."""
-		share = (O.time - self.stageStart["time"]) / rampTime
-		if share < 1:
-			return share / 2
-		decades = math.log10(max(self.lastRow["unbalanced"], 1e-30) / self.config.consolidation.unbalanced)
-		return min(0.99, 0.5 + 0.5 * (1 - min(1.0, max(0.0, decades / 3))))
-
-	def _restless(self, steps):
-		keys = self.config.consolidation
-		errors = ", ".join(f"{name} off by {100 * error:.2g} %" for name, error in self._errors().items())
-		return (
-			f"consolidation.maxSteps = {keys.maxSteps}: not at rest after {steps} steps (unbalanced {self.lastRow['unbalanced']:.2e}, "
-			f"limit {keys.unbalanced:g}; {errors}, tolerance {100 * self._tolerance():g} %); its state is the checkpoint in "
-			f"'{self.out}'; fix: allow more steps, a higher limit or tolerance, or more numerics.damping"
-		)
-
-	# Shear
-
-	def beginShear(self):
-		"""Strains count from here and the platens are set to their velocities."""
-		self._enter("shear")
-		self.scene.holdRadialLoad()
-		self.scene.setFriction(self.config.specimen.friction, self.config.platens.friction)
-		self.scene.setTimeLimit(None)
-		keys = self.config.shear
-		share = {"top": (0.0, 1.0), "both": (0.5, 0.5)}[keys.moving]
-		for drive, part in zip((self.scene.bottomDrive, self.scene.topDrive), share):
-			drive.mode = "velocity"
-			drive.velocity = part * keys.velocity
-			drive.rampTime = 2 * keys.rampStrain * self.reference.height / keys.velocity
-
-	def strain(self):
-		"""Axial strain since the stage began, compression positive."""
-		bottom, top = self.scene.faces()
-		return 1 - (top - bottom) / self.reference.height
-
-	def shear(self):
-		"""Shear from the consolidated state to the wished strain, one row at each equal part of it; leaves ``sheared.yade.gz``.
-
-		:raises StageError: the platens do not move as asked; the pressure is not held and ``shear.stopOutsideTolerance`` is set.
-		"""
-		keys = self.config.shear
-		watch = PressureWatch(keys, self.scene.lateralBoundary.name)
-		total = self.config.output.records
-		with Progress("shear", self.quiet) as progress:
-			self._announceShear(progress)
-			if self.rowCount == 0:
-				self.advance(1)  # forces are not in a saved state, and a row needs them
-				self.row()
-				self._frame()
-			while self.rowCount <= total:
-				self._until(keys.strain * self.rowCount / total)
-				self.row()
-				if said := watch.strayed(self.lastRow):
-					if keys.stopOutsideTolerance:
-						raise StageError(f"{said}; the last checkpoint is in '{self.out}'")
-					progress.say(f"WARNING: {said}")
-				self._show(progress, (self.rowCount - 1) / total)
-				every = self.config.output.vtkEvery
-				if every and ((self.rowCount - 1) % every == 0 or self.rowCount > total):
-					self._frame()
-				if self._checkpointDue():
-					checkTimeStep(self.config, self.scene, progress.say)
-				self._maybeCheckpoint()
-			self._report(progress, watch)
-		self.checkpoint("sheared")
-
-	def _until(self, strain):
-		"""Run to an axial strain, to within one step's travel, one step at least."""
-		step = self.config.shear.velocity * O.dt / self.reference.height
-		limit = O.iter + 10 * self._stepsOfShear()
-		missing = strain - self.strain()
-		while True:
-			if O.iter > limit:
-				raise StageError(f"shear.strain = {self.strain():.4g}: the platens do not move as asked; fix: see the engines of the scene")
-			self.advance(max(1, round(missing / step)))
-			if (missing := strain - self.strain()) <= 0.5 * step:
-				return
-
-	def _stepsOfShear(self):
-		return math.ceil((self.config.shear.strain + self.config.shear.rampStrain) * self.reference.height / (self.config.shear.velocity * O.dt))
-
-	def _announceShear(self, progress):
-		keys = self.config.shear
-		if self.rowCount == 0:
-			largest = mostRows(self.config, self.reference.height)
-			if self.config.output.records > largest:
-				raise StageError(
-					f"output.records = {self.config.output.records}: shear of the consolidated specimen has {largest} steps; "
-					f"fix: shear '{self.out / 'consolidated.yade.gz'}' with --from into another folder, with {largest} rows at most"
-				)
-		inertial = keys.velocity / self.reference.height * self._inertialTime()
-		progress.say(
-			f"shear at {keys.velocity:g} m/s to {100 * keys.strain:g} %: about {self._stepsOfShear()} steps, inertial number {inertial:.2e}"
-			+ ("" if inertial <= QUASISTATIC else f"; WARNING: above {QUASISTATIC:g} this is not quasi-static; fix: lower shear.velocity")
-		)
-
-	def _report(self, progress, watch):
-		row = self.lastRow
-		progress.say(
-			f"sheared to {100 * row['axial_strain']:.2f} %: q {1e-3 * row['q']:.1f} kPa, volumetric strain "
-			f"{100 * row['volumetric_strain_radius']:.2f} % (Eq. 6) and {100 * row['volumetric_strain_volume']:.2f} % (volume), "
-			f"transmitted {1e-3 * row['sigma3_transmitted_group3']:.2f} kPa ({watch.summary(self.records.path)}), broken bonds {row['bonds_broken']}"
-			+ (f", energy balance off by {100 * row['energy_error']:.2g} %" if O.trackEnergy else "")
-		)
-
-	def _frame(self):
-		if self.config.output.vtkEvery:
-			self.frames.write(self.scene, self.grains, self.reference.radius, self.inside.grainArrays)
-
-	def _checkpointDue(self):
+	def checkpointDue(self):
+		"""Whether a checkpoint belongs after this row."""
 		every = self.config.output.checkpointEvery
 		return every > 0 and self.rowCount % every == 0
 
-	def _maybeCheckpoint(self):
-		if self._checkpointDue():
+	def maybeCheckpoint(self):
+		if self.checkpointDue():
 			self.checkpoint()
 
+	def frame(self):
+		"""Write a VTK frame, where they are asked for."""
+		if self.config.output.vtkEvery:
+			self.frames.write(self.scene, self.grains, self.reference.radius, self.inside.grainArrays)
 
-def mostRows(config, height):
-	"""How many rows shear from this height [m] can have: one a step of the time step in ``O``."""
-	return math.floor(config.shear.strain * height / (config.shear.velocity * O.dt))
+	def tellSaturated(self, say):
+		"""Tell of each closed loop that has come to its limit, once. :param say: takes lines of the log."""
+		for loop, factor in self.scene.saturated().items():
+			if loop in self._told:
+				continue
+			self._told.add(loop)
+			row = self.lastRow
+			say(
+				f"WARNING: {loop} stands at its limit, {factor:.4g} times what is asked for, in {self.stage} at {100 * row['axial_strain']:.2f} %: "
+				f"{1e-3 * row['sigma3_transmitted_group3']:.4g} kPa of {1e-3 * row['sigma3_target']:.4g} kPa arrive; fix: a larger maxFactor, or a membrane that carries less "
+				"(young, thickness)"
+			)
 
+	def strain(self):
+		"""Axial strain since the last consolidation ended, compression positive."""
+		bottom, top = self.scene.faces()
+		return 1 - (top - bottom) / self.reference.height
 
-def checkRows(config):
-	"""The rows wished must have steps to stand for, also when the specimen has become shorter in consolidation.
+	def q(self):
+		"""Deviatoric stress of the soil [Pa], as in the records."""
+		return rows.deviator(self.scene.measure.stress())
 
-	:raises ConfigError: they have not.
-	"""
-	bottom, top = Scene().faces()
-	largest = mostRows(config, (1 - _SHORTER) * (top - bottom))
-	if config.output.records > largest:
-		wrong = f"is finer than the steps of shear, of {O.dt:.4g} s"
-		raise ConfigError("output.records", config.output.records, wrong, f"at most {largest}, or a lower shear.velocity")
+	# The stages
+
+	def begin(self, k):
+		"""Begin stage ``k`` of the plan."""
+		self.stageAt(k).begin()
+
+	def stageAt(self, k):
+		"""What runs stage ``k`` of the plan."""
+		planned = self.plan[k]
+		return (Consolidation if planned.kind == CONSOLIDATION else Straining if planned.straining else Resting)(self, planned)
+
+	@property
+	def present(self):
+		"""Number of the present stage in the plan, -1: none is begun."""
+		return next((k for k, planned in enumerate(self.plan) if planned.label == self.stage), -1)
+
+	def proceed(self, until=None):
+		"""Run the stages from where the test is to the end of the one with the label ``until``, None: all. Each leaves its state, ``consolidated.yade.gz`` for example.
+
+		:raises StageError: a stage does not reach its end.
+		"""
+		if self.present < 0:
+			self.begin(0)
+		last = len(self.plan) - 1 if until is None else [planned.label for planned in self.plan].index(until)
+		for k in range(self.present, last + 1):
+			self.runStage(k)
+			if k + 1 < len(self.plan):
+				self.begin(k + 1)
+			self.checkpoint(self.plan[k].state)
+
+	def runStage(self, k):
+		"""Run stage ``k`` of the plan, which is begun, to its end."""
+		self.stageAt(k).run()
 
 
 def _lostError():

@@ -69,7 +69,7 @@ KNOBS = (
 	Knob(
 		"stiffness",
 		"specimen.emod",
-		lambda c, r: timestep.stiffnessLevel(c.specimen.emod, c.consolidation.pressure),
+		lambda c, r: timestep.levelOf(c.specimen.springs, r, c.consolidation.pressure),
 		lambda x, c, r: 4 * c.consolidation.pressure * x / math.pi,
 	),
 	Knob("step", "numerics.safety", lambda c, r: c.numerics.safety, lambda x, c, r: x),
@@ -217,7 +217,7 @@ def budget(config, radii, measured=None):
 		if knob.applies(config) and knob.name in measured.curves:
 			curve, x = measured.curves[knob.name], knob.level(config, radii)
 			errors = {name: _withGrains(curve.error(name, x), len(radii)) for name in QUANTITIES} if curve.covers(x) else None
-			parts.append((knob.key, _get(config, knob.key), x, errors))
+			parts.append((_keyOf(knob, config), _get(config, _keyOf(knob, config)), x, errors))
 	if config.specimen.massScaling:
 		parts.append(("specimen.massScaling", True, math.nan, {name: _withGrains(errors, len(radii)) for name, errors in measured.switch[_switchLevel(config)].items()}))
 	return Budget(parts, _scattered(measured.scatter, len(radii)), _scattered(measured.packings, len(radii)))
@@ -229,6 +229,11 @@ def _switchLevel(config):
 	return "on with the membrane" if config.boundary == "membrane" and config.membrane.densityScaling is None else "on"
 
 
+def _keyOf(knob, config):
+	"""The key that says the knob's value in this configuration."""
+	return config.specimen.stiffnessKey if knob.key == "specimen.emod" else knob.key
+
+
 def _get(config, key):
 	section, name = key.split(".")
 	return getattr(getattr(config, section), name)
@@ -237,6 +242,7 @@ def _get(config, key):
 def openKeys(config):
 	"""Keys that ``accuracy`` chooses, since the configuration leaves them out."""
 	given = config.given | ({"membrane.sizeRatio"} if config.membrane.particleRadius is not None else set())
+	given |= {"specimen.emod"} if config.specimen.springs.direct else set()
 	return [knob.key for knob in KNOBS if knob.chosen and knob.applies(config) and knob.key not in given]
 
 
@@ -278,7 +284,7 @@ def _level(knob, measured, config, radii):
 	curve, x = measured.curves[knob.name], knob.level(config, radii)
 	if not curve.covers(x):
 		raise ConfigError(
-			knob.key, _get(config, knob.key), f"is at level {x:.3g}, and errors were measured from {curve.x[0]:.3g} to {curve.x[-1]:.3g} only",
+			_keyOf(knob, config), _get(config, _keyOf(knob, config)), f"is at level {x:.3g}, and errors were measured from {curve.x[0]:.3g} to {curve.x[-1]:.3g} only",
 			"leave the key out, or leave accuracy out",
 		)  # fmt: skip
 	return numpy.array([x])

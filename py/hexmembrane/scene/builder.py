@@ -21,20 +21,22 @@ def _wantEmpty():
 
 def _materials(config):
 	grain, platens = config.specimen, config.platens
-	common = {"emod": grain.emod, "kratio": grain.kratio, "density": grain.density}
-	O.materials.append(yade.LinearMat(friction=grain.friction, rollingFriction=grain.rollingFriction, label="grain", **common))
-	O.materials.append(yade.LinearMat(friction=platens.friction, label="platen", **common))
+	O.materials.append(
+		yade.LinearMat(friction=grain.friction, rollingFriction=grain.rollingFriction, density=grain.density, label="grain", **grain.springs.given())
+	)
+	O.materials.append(yade.LinearMat(friction=platens.friction, density=grain.density, label="platen", **config.springs("platens").given()))
 
 
 def _raiseMasses(config, ids, radii, say):
 	"""Give the grains the masses of ``specimen.massScaling``; the material keeps the grains' true density."""
-	for state, factor in zip((O.bodies[i].state for i in ids), timestep.massFactors(radii).tolist()):
+	factors = timestep.massFactors(radii, config.specimen.springs.direct)
+	for state, factor in zip((O.bodies[i].state for i in ids), factors.tolist()):
 		state.mass *= factor
 		state.inertia *= factor
 	true = timestep.sphereMass(radii, config.specimen.density)
 	steps = [timestep.grainStep(dataclasses.replace(config.specimen, massScaling=raised), radii) for raised in (True, False)]
 	say(
-		f"grains' mass times {(true * timestep.massFactors(radii)).sum() / true.sum():.3g}, {timestep.massFactors(radii).max():.3g} for the smallest: their "
+		f"grains' mass times {(true * factors).sum() / true.sum():.3g}, {factors.max():.3g} for the smallest: their "
 		f"critical step is {steps[0]:.4g} s instead of {steps[1]:.4g} s"
 	)
 
@@ -127,10 +129,10 @@ def build(config, packing, say=print):
 	_setTimeStep(config, timestep.grainStep(config.specimen, packing.radii), parts, say)
 	for line in parts.log:
 		say(line)
-	level = timestep.stiffnessLevel(config.specimen.emod, config.consolidation.pressure)
+	level = timestep.levelOf(config.specimen.springs, packing.radii, config.consolidation.pressure)
 	say(
 		f"grains: {len(packing.radii)}, kn/(p d) = {level:.4g} at {1e-3 * config.consolidation.pressure:g} kPa"
-		+ ("" if level >= 300 else "; WARNING: below 300 the grains are soft and overlaps are not small, see the error budget; fix: raise specimen.emod")
+		+ ("" if level >= 300 else f"; WARNING: below 300 the grains are soft and overlaps are not small, see the error budget; fix: raise {config.specimen.stiffnessKey}")
 	)
 	return scene
 
@@ -145,12 +147,12 @@ def _stressServos(config, packing, parts, bottom, top, drive, lateral):
 	measure = yade.SoilMeasure(bottomPlaten=bottom, topPlaten=top, **parts.around)
 	servos = []
 	if keys.axial == "soil":
-		servos.append(yade.SoilStressServo(measure=measure, drive=drive, stress=0.0, timeConstant=keys.stressTime or 10 * inertial))
+		servos.append(yade.SoilStressServo(measure=measure, drive=drive, stress=0.0, timeConstant=keys.stressTime or 10 * inertial, maxFactor=keys.maxFactor))
 	closed = config.membrane.pressureTime != math.inf
 	if config.boundary == "membrane" and (keys.radial or ("soil" if closed else "transmitted")) == "soil":
 		byName = {type(engine).__name__: engine for engine in lateral}
 		loads = {"pressure": byName["MembranePressure"], "beside": byName.get("MembraneRadialServo")}
-		servos.append(yade.SoilStressServo(measure=measure, stress=0.0, timeConstant=keys.stressTime or 20 * inertial, **loads))
+		servos.append(yade.SoilStressServo(measure=measure, stress=0.0, timeConstant=keys.stressTime or 20 * inertial, maxFactor=keys.maxFactor, **loads))
 	return servos
 
 

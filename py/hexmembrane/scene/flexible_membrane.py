@@ -43,7 +43,7 @@ def generate(config, particleRadius, smallest):
 	:raises ValueError: it is too coarse for the specimen or the grains, and such.
 	"""
 	keys, grain = config.membrane, config.specimen
-	O.materials.append(yade.LinearMat(emod=grain.emod, kratio=grain.kratio, friction=0, density=keys.density, label="membrane"))
+	O.materials.append(yade.LinearMat(friction=0, density=keys.density, label="membrane", **config.springs("membrane").given()))
 	membrane = yade.HexMembrane(
 		specimenRadius=grain.radius,
 		specimenHeight=grain.height,
@@ -142,7 +142,8 @@ class FlexibleMembrane(LateralBoundary):
 		membrane = generate(config, keys.particleRadius or keys.sizeRatio * smallest, smallest)
 		bending = bendingStiffness(config, packing.radii)
 		sheet = sheetEngines(keys, membrane, bending)
-		unscaled = timestep.membraneStep(config.specimen, keys.density, largest, membrane.sphereRadius, sheetStep(sheet))
+		springs = config.specimen.springs, config.springs("membrane")
+		unscaled = timestep.membraneStep(*springs, keys.density, largest, membrane.sphereRadius, sheetStep(sheet))
 		scaling = timestep.densityScaling(keys.densityScaling, timestep.grainStep(config.specimen, packing.radii), unscaled)
 		scaleDensity(membrane, scaling)
 
@@ -154,10 +155,10 @@ class FlexibleMembrane(LateralBoundary):
 			before = [
 				*sheet,
 				*facetEngines(keys, membrane, sheet[0]),
-				yade.MembranePressure(membrane=membrane, pressure=0.0, surface=keys.surface, timeConstant=pressureTime),
+				yade.MembranePressure(membrane=membrane, pressure=0.0, surface=keys.surface, timeConstant=pressureTime, maxFactor=keys.maxFactor),
 			]
 			if 2 in membrane.groups:
-				before.append(yade.MembraneRadialServo(membrane=membrane, pressure=0.0, areaRule=keys.areaRule, timeConstant=servoTime))
+				before.append(yade.MembraneRadialServo(membrane=membrane, pressure=0.0, areaRule=keys.areaRule, timeConstant=servoTime, maxFactor=keys.servoMaxFactor))
 			return before, [yade.MembraneORings(membrane=membrane, mode=keys.oRings, bottomPlaten=bottom, topPlaten=top)]
 
 		return BoundaryParts(
@@ -250,6 +251,11 @@ class FlexibleMembrane(LateralBoundary):
 	def transmittedPressures(self):
 		pressures = self.membrane.transmittedByGroup()
 		return pressures if self.radialServo else {**pressures, 2: pressures[3]}
+
+	def saturated(self):
+		loops = {"maxFactor": ("main body", self.pressureEngine), "servoMaxFactor": ("rows beside the platens", self.radialServo)}
+		working = {key: (part, loop) for key, (part, loop) in loops.items() if loop and loop.saturated}
+		return {f"membrane.{key} = {loop.maxFactor:g}: the pressure of the membrane's {part}": loop.factor for key, (part, loop) in working.items()}
 
 	def brokenBonds(self):
 		return self.bonds.brokenCount

@@ -102,6 +102,22 @@ class Scene:
 		"""Confining pressure asked for [Pa]."""
 		return self.radialServo.stress if self.radialServo else self.lateralBoundary.pressure
 
+	def consolidateAgain(self):
+		"""After a shear: the bottom platen stands, the top one holds its stress, and the membrane's pressure follows the soil's radial stress again."""
+		self.bottomDrive.mode, self.bottomDrive.velocity = "velocity", 0.0
+		self.topDrive.mode = "stress"
+		for drive in (self.bottomDrive, self.topDrive):
+			drive.rampTime = 0.0
+		if self.radialServo:
+			self.radialServo.dead = False
+
+	def saturated(self):
+		"""The closed loops that stand at a limit, of the lateral boundary and on the soil: {key, its value and what is loaded: the present factor}."""
+		loops = {"axial": self.axialServo, "radial": self.radialServo}
+		working = {name: loop for name, loop in loops.items() if loop and loop.saturated and not loop.dead and (name == "radial" or self.topDrive.mode == "stress")}
+		own = {f"consolidation.maxFactor = {loop.maxFactor:g}: the load that gives the soil its {name} stress": loop.factor for name, loop in working.items()}
+		return {**self.lateralBoundary.saturated(), **own}
+
 	def holdRadialLoad(self):
 		"""Leave the membrane's pressure at what has brought the soil's radial stress to its target: from here on the transmitted pressure is held."""
 		if self.radialServo:

@@ -105,6 +105,10 @@ class LateralBoundary(abc.ABC):
 		"""Ids of its bodies that move freely."""
 		return []
 
+	def saturated(self):
+		"""Its closed loops that stand at a limit: {key, its value and what is loaded: the present factor}."""
+		return {}
+
 	def brokenBonds(self):
 		"""Number of broken bonds of the boundary itself."""
 		return 0

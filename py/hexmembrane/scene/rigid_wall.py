@@ -30,7 +30,7 @@ class RigidWall(LateralBoundary):
 		"""A wall as wide as the packing; it reaches half the specimen's height beyond each end, so that no grain meets an end of it."""
 		keys, grain, height = config.wall, config.specimen, config.specimen.height
 		O.materials.append(
-			yade.LinearMat(emod=grain.emod, kratio=grain.kratio, friction=keys.friction, density=grain.density, label="wall")
+			yade.LinearMat(friction=keys.friction, density=grain.density, label="wall", **config.springs("wall").given())
 		)
 		body = yade.Body()
 		body.shape = yade.CylinderWall(radius=packing.radius, height=2 * height)

@@ -26,9 +26,30 @@ def contactStiffness(emod, r1, r2):
 	return math.pi * emod * min(r1, r2) ** 2 / (r1 + r2)
 
 
+def pairStiffness(a, b, r1, r2):
+	"""Normal stiffness [N/m] of two spheres: their own springs in series.
+
+	:param a, b: the bodies' :class:`hexmembrane.configuration.stiffness.Springs`.
+	:param r1, r2: their radii [m].
+	"""
+	shape = min(r1, r2) ** 2 / (r1 + r2)
+	return 1 / (1 / a.own(shape) + 1 / b.own(shape))
+
+
 def stiffnessLevel(emod, pressure):
 	"""kn/(p d) of contacts of two equal grains of diameter d: pi emod/(4 p)."""
 	return math.pi * emod / (4 * pressure)
+
+
+def levelOf(springs, radii, pressure):
+	"""kn/(p d) of contacts of two grains of the mean diameter by volume d; with emod it is the same for all sizes.
+
+	:param springs: of the grains, :class:`hexmembrane.configuration.stiffness.Springs`.
+	:param radii: of the grains, or one radius [m].
+	"""
+	if not springs.direct:
+		return stiffnessLevel(springs.emod, pressure)
+	return springs.kn / 2 / (pressure * 2 * float((numpy.asarray(radii) ** 3).mean()) ** (1 / 3))
 
 
 def inertialTime(radii, density, pressure):
@@ -40,15 +61,15 @@ def inertialTime(radii, density, pressure):
 	return diameter * math.sqrt(density / pressure)
 
 
-def massFactors(radii):
-	"""Factors on the grains' masses and moments of inertia with ``specimen.massScaling``: (r_max/r)^2.
+def massFactors(radii, direct=False):
+	"""Factors on the grains' masses and moments of inertia with ``specimen.massScaling``: (r_max/r)^2, with a direct stiffness (r_max/r)^3.
 
 	2/omega of a grain among its equals goes with sqrt(m/kn), and kn with r. It is that of the largest grain with m = m_max r/r_max, and m itself goes
-	with r^3.
+	with r^3. A direct stiffness does not go with r, so there all grains get the mass of the largest.
 
 	:param radii: of the grains [m].
 	"""
-	return (numpy.max(radii) / numpy.asarray(radii)) ** 2
+	return (numpy.max(radii) / numpy.asarray(radii)) ** (3 if direct else 2)
 
 
 def grainStep(specimen, radii):
@@ -63,24 +84,25 @@ def grainStep(specimen, radii):
 	:param radii: of the grains, or one radius [m].
 	"""
 	radius = float(numpy.max(radii) if specimen.massScaling else numpy.min(radii))
-	kn = contactStiffness(specimen.emod, radius, radius)
-	translation, rotation = 1 + 2 / specimen.kratio, 2 / specimen.kratio / 0.4
+	springs = specimen.springs
+	kn = pairStiffness(springs, springs, radius, radius)
+	translation, rotation = 1 + 2 / springs.ratio, 2 / springs.ratio / 0.4
 	return 2 / math.sqrt(2 * CONTACTS / 3 * kn * max(translation, rotation) / sphereMass(radius, specimen.density))
 
 
-def membraneStep(specimen, density, largest, particleRadius, sheetStep):
+def membraneStep(grains, membrane, density, largest, particleRadius, sheetStep):
 	"""Critical step [s] of the membrane's spheres before there are contacts: GRAINS_PER_PARTICLE grains of the largest radius and the sheet's own springs at once.
 
 	The contacts are smooth, so they turn nothing.
 
-	:param specimen: configuration's specimen section.
+	:param grains, membrane: stiffness of either, :class:`hexmembrane.configuration.stiffness.Springs`.
 	:param density: of the membrane's spheres [kg/m3].
 	:param largest: largest grain radius [m].
 	:param particleRadius: of the membrane's spheres [m].
 	:param sheetStep: critical step of the sheet alone [s], its bonds and what else holds it together.
 	:returns: the step without ``membrane.densityScaling``, which multiplies it by its root.
 	"""
-	contacts = GRAINS_PER_PARTICLE * contactStiffness(specimen.emod, particleRadius, largest)
+	contacts = GRAINS_PER_PARTICLE * pairStiffness(grains, membrane, particleRadius, largest)
 	return 2 / math.sqrt(contacts / sphereMass(particleRadius, density) + (2 / sheetStep) ** 2)
 
 

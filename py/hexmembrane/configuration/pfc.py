@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""PFC's names of properties and what they are here: who writes one gets an error with the key. Uses nothing of YADE."""
+
+_BONDS = "grains of a configuration have no contact bonds; a script has LinearMat.cbTensile and cbShear, membrane.tensileStrength and shearStrength are the sheet's"
+_PARALLEL = "there is no parallel bond here"
+_DASHPOT = "contacts have no dashpots here; numerics.damping is PFC's local damping"
+
+#: PFC's name -> the key here by section, '' for every other section.
+NAMES = {
+	"fric": {"specimen": "specimen.friction", "platens": "platens.friction", "wall": "wall.friction", "membrane": "nothing: the membrane has no friction with the soil", "": "friction"},
+	"rr_fric": {"specimen": "specimen.rollingFriction", "": "specimen.rollingFriction; platens, wall and membrane have none"},
+	"damp": {"": "numerics.damping"},
+	"density": {"": "density, in specimen or membrane"},
+	"radius": {"membrane": "membrane.particleRadius", "": "specimen.radius for the specimen; sizes of grains are specimen.radiusRange, radiusMean, radiusBins or gradation"},
+	"kn": {"membrane": "membrane.contactKn towards the soil; a bond of the sheet has kn = young thickness/(sqrt(3) (1 - poisson))", "": "specimen.kn, platens.kn or wall.kn"},
+	"ks": {
+		"membrane": "membrane.contactKs towards the soil; a bond of the sheet has ks = kn (1 - 3 poisson)/(1 + poisson)",
+		"": "specimen.ks, platens.ks or wall.ks",
+	},
+	"emod": {"membrane": "membrane.contactKn and contactKs; without them the membrane has the grains' stiffness", "": "specimen.emod, platens.emod or wall.emod"},
+	"kratio": {"membrane": "membrane.contactKn and contactKs; without them the membrane has the grains' stiffness", "": "specimen.kratio, platens.kratio or wall.kratio"},
+	"cb_tenf": {"membrane": "membrane.tensileStrength", "": _BONDS},
+	"cb_shearf": {"membrane": "membrane.shearStrength", "": _BONDS},
+	**{name: {"": _PARALLEL} for name in ("pb_kn", "pb_ks", "pb_ten", "pb_coh", "pb_fa", "pb_rmul", "pb_mcf", "pb_emod", "pb_kratio")},
+	**{name: {"": _DASHPOT} for name in ("dp_nratio", "dp_sratio", "dp_mode")},
+	"rgap": {"": "nothing: contacts begin where bodies touch"},
+	"porosity": {"": "specimen.porosity"},
+	"xvel": {"": "nothing: platens move along z"},
+	"zvel": {"": "shear.velocity, at which the platens approach each other"},
+	"gravity": {"": "nothing: tests have no gravity"},
+}  # fmt: skip
+
+
+def named(name, section):
+	"""What PFC's property ``name``, written in a section, is called here; '' when PFC has none of that name."""
+	places = NAMES.get(str(name).replace("-", "_"), {})
+	return places.get(section, places.get("", ""))
