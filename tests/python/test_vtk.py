@@ -36,8 +36,14 @@ def test_wrongLength(tmp_path):
 
 
 def test_badPlaces(tmp_path):
-	with pytest.raises(OSError, match="cannot be written"):
-		vtk.write(tmp_path / "nowhere" / "g.vtp", POINTS)
+	"""VTK gives no reason, the system does."""
+	path = tmp_path / "nowhere" / "g.vtp"
+	with pytest.raises(FileNotFoundError) as caught:
+		vtk.write(path, POINTS)
+	assert caught.value.filename == str(path)
+	(tmp_path / "g.vtp.part").mkdir()
+	with pytest.raises(IsADirectoryError):
+		vtk.write(tmp_path / "g.vtp", POINTS)
 	with pytest.raises(FileNotFoundError, match="no such file"):
 		vtk.read(tmp_path / "nowhere.vtp")
 

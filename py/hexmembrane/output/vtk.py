@@ -11,6 +11,8 @@ hoop_strain, axial_strain [-], hoop_tension, axial_tension [N/m], see :func:`hex
 Of a rigid wall's points: pressure [Pa], normal_displacement [m], outward positive.
 """
 
+import contextlib
+import errno
 import os
 import pathlib
 
@@ -19,6 +21,9 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray,
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter
+
+#: Bytes that are written in the place of a file that VTK could not write, to hear why.
+_PROBE = 1 << 20
 
 
 def _cells(connectivity):
@@ -69,9 +74,23 @@ def write(path, points, triangles=None, pointData=None, cellData=None):
 	writer.SetCompressorTypeToLZ4()
 	writer.SetEncodeAppendedData(False)
 	if not os.access(path.parent, os.W_OK) or writer.Write() != 1 or writer.GetErrorCode():
-		part.unlink(missing_ok=True)
-		raise OSError(f"vtk.path = '{path}': cannot be written; fix: check the folder and the space on the disk")
+		raise _fault(path, part)
 	part.replace(path)
+
+
+def _fault(path, part):
+	"""VTK does not say why a file cannot be written: the error that the system gives for another one in its place."""
+	reason = OSError(errno.EIO, "VTK could not write it", str(path))
+	try:
+		with open(part, "wb") as file:
+			file.write(bytes(_PROBE))
+			file.flush()
+			os.fsync(file.fileno())
+	except OSError as error:
+		reason = OSError(error.errno, error.strerror, str(path))
+	with contextlib.suppress(OSError):
+		part.unlink()
+	return reason
 
 
 def read(path):
