@@ -14,6 +14,7 @@ import casescenes
 import survey
 from hexmembrane.configuration import Config, merged
 from hexmembrane.output import records
+from hexmembrane.report.verdict import ENERGY
 from hexmembrane.run.pipeline import run as runTest
 from yade import O
 
@@ -21,13 +22,13 @@ from yade import O
 FEW = {
 	"specimen": {"grains": 250, "height": 0.05, "porosity": 0.44},
 	"shear": {"strain": 0.1, "velocity": 0.1},
-	"output": {"records": 40, "vtkEvery": 20, "checkpointEvery": 10},
+	"output": {"records": 40, "vtkEvery": 20, "checkpointEvery": 10, "report": False},
 }
 #: What a short form has instead.
 FEWER = {
 	"specimen": {"grains": 150, "height": 0.04, "porosity": 0.46},
 	"shear": {"strain": 0.03, "rampStrain": 0.002},
-	"output": {"records": 12, "vtkEvery": 6, "checkpointEvery": 4},
+	"output": {"records": 12, "vtkEvery": 6, "checkpointEvery": 4, "report": False},
 }
 #: Bounds of every test that is done; measurements are defined in caseruns.py.
 USUAL = {
@@ -35,7 +36,7 @@ USUAL = {
 	"start radial": (0, 0.01),
 	"boundary": (0, 0.1),
 	"held": (0, 0.03),
-	"energy": (0, 2e-3),
+	"energy": (0, ENERGY),
 	"energy, consolidation": (0, 2e-3),
 	"membrane speed": (0, 0.3),
 	"largest soil stress/sigma3": (0.9, 6),

@@ -12,7 +12,7 @@ from hexmembrane.scene.timestep import inertialTime, stiffnessLevel
 from survey import QUICK
 
 #: Of every run. The time step is looked at where there are checkpoints, so there are some.
-COMMON = {"shear": {"strain": 0.15}, "output": {"records": 60, "vtkEvery": 0, "checkpointEvery": 20, "energy": False}}
+COMMON = {"shear": {"strain": 0.15}, "output": {"records": 60, "vtkEvery": 0, "checkpointEvery": 20, "energy": False, "report": False}}
 #: Share of the base run's steps that its consolidation takes: 8,500 of 38,000.
 CONSOLIDATION = 0.22
 BASE = "base"

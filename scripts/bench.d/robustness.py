@@ -50,7 +50,7 @@ def cases():
 
 
 def configuration(change):
-	common = {"shear": {"strain": 0.2}, "output": {"records": 40, "vtkEvery": 0, "checkpointEvery": 10, "energy": False}}
+	common = {"shear": {"strain": 0.2}, "output": {"records": 40, "vtkEvery": 0, "checkpointEvery": 10, "energy": False, "report": False}}
 	return survey.configuration(common, change)
 
 

@@ -5,7 +5,8 @@ YADE's own program prints its banner, opens network ports for remote control and
 well, which starts YADE only. The exit code is that of the script.
 
 A signal while YADE starts ends the process at once: an exception must not pass through its libraries. Whoever starts this blocks SIGINT and SIGTERM
-(runPython of setup.sh), which Python would meet with a traceback before it reads the first line here. Standard streams that are closed are opened
+(runPython of setup.sh), which Python would meet with a traceback before it reads the first line here. YADE would have SIGHUP change nothing; here it
+is as the caller has it: a terminal that is closed ends a script, but for nohup. Standard streams that are closed are opened
 on /dev/null, lest a file of the script gets their place.
 """
 
@@ -18,6 +19,9 @@ import runpy
 import shutil
 import signal
 import sys
+
+#: Signals that end a process, and what it says.
+_ENDING = {signal.SIGINT: b"interrupted\n", signal.SIGTERM: b"terminated\n", signal.SIGHUP: b"hung up\n"}
 
 
 def openStreams():
@@ -40,15 +44,15 @@ def flushStreams():
 
 @contextlib.contextmanager
 def endedBySignals():
-	"""Within it SIGINT and SIGTERM end the process at once, with a shell's exit code for them."""
+	"""Within it a signal of _ENDING ends the process at once, with a shell's exit code for it; after it all are as before."""
 
 	def end(number, frame):
 		with contextlib.suppress(OSError):
-			os.write(2, b"interrupted\n" if number == signal.SIGINT else b"terminated\n")
+			os.write(2, _ENDING[number])
 		os._exit(128 + number)
 
 	# a signal that the caller has set to be ignored stays so
-	before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+	before = {number: signal.getsignal(number) for number in _ENDING}
 	before = {number: handler for number, handler in before.items() if handler is not signal.SIG_IGN}
 	for number in before:
 		signal.signal(number, end)

@@ -10,8 +10,12 @@ set -euo pipefail
 . "$setupDir/root.sh"
 # shellcheck source=scripts/setup.d/native.sh
 . "$setupDir/native.sh"
+# shellcheck source=scripts/setup.d/beside.sh
+. "$setupDir/beside.sh"
 # shellcheck source=scripts/setup.d/lammps.sh
 . "$setupDir/lammps.sh"
+# shellcheck source=scripts/setup.d/browser.sh
+. "$setupDir/browser.sh"
 
 # Where YADE comes from: sets host (native or root), yadeSource and entry.
 chooseHost() {

@@ -102,6 +102,7 @@ TABLE = {
 	"numerics.*": _ALWAYS[CONSOLIDATION],
 	"output.records": _ALWAYS[SHEAR],
 	"output.vtkEvery": (),
+	"output.report": (),
 	"output.checkpointEvery": (At(CONSOLIDATION, _reference),),  # there a test goes on from what it has saved
 	"output.*": _ALWAYS[CONSOLIDATION],
 }

@@ -4,7 +4,8 @@
 import collections
 
 import numpy
-from results import CONFIDENCE, group, halfWidth
+from hexmembrane.report.summary import CONFIDENCE, halfWidth
+from results import group
 
 #: Strains at which curves are averaged; columns of panels at most, with more there is one; lines that a legend names at most.
 _POINTS, _MOST_COLUMNS, _MOST_NAMED = 201, 6, 10

@@ -22,13 +22,15 @@ _PACKING_TIME, _PACKING, _PICTURE = 2e-3, 90, 150000
 
 
 def _settled(config):
-	"""The configuration with what ``accuracy`` chooses, and the radii of its grains; one thread, and pictures in VTK only when they are asked for."""
+	"""The configuration with what ``accuracy`` chooses, and the radii of its grains; one thread, and pictures in VTK and pages only when they are asked for."""
 	radii = specimen.plannedRadii(config)
 	if config.accuracy is not None:
 		accuracy.choose(config, radii)
 	config.accuracy, config.numerics.threads = None, None
 	if "output.vtkEvery" not in config.given:
 		config.output.vtkEvery = 0
+	if "output.report" not in config.given:
+		config.output.report = False
 	return radii
 
 

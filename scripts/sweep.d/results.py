@@ -7,32 +7,15 @@ import datetime
 import hashlib
 import io
 import json
-import math
 import pathlib
 
 import numpy
 from hexmembrane.output import records
 from hexmembrane.output.records import COLUMNS
+from hexmembrane.report.summary import QUANTITIES, halfWidth, quantities
 from plan import STAGES_FOLDER, result, writeText
-from scipy.stats import t as student
 
 RUNS, MEANS, RECORDS, PROVENANCE = "runs.csv", "means.csv", "records.h5", "provenance.json"
-#: Share of the intervals.
-CONFIDENCE = 0.95
-#: Rows of the records that a peak is smoothed over, so that the noise of one is no peak.
-SMOOTHED = 5
-#: What a run's row says: name -> unit.
-QUANTITIES = {
-	"peak_q": "Pa",
-	"strain_at_peak": "-",
-	"end_q": "Pa",
-	"end_volumetric_strain": "-",
-	"start_porosity": "-",
-	"end_porosity": "-",
-	"start_coordination": "-",
-	"end_coordination": "-",
-	"largest_energy_error": "-",
-}
 
 
 def headers():
@@ -50,25 +33,6 @@ def sheared(path):
 	table = records.read(path)
 	rows = numpy.array([stage == "shear" for stage in table["stage"]])
 	return {name: column[rows] for name, column in table.items() if name != "stage"}
-
-
-def quantities(table):
-	"""QUANTITIES of the records of a shear: peak of q smoothed over SMOOTHED rows; volumetric strain of the enclosed volume, dilation positive."""
-	width = min(SMOOTHED, len(table["q"]))
-	smooth = numpy.convolve(table["q"], numpy.full(width, 1 / width), "valid")
-	peak = int(smooth.argmax())
-	errors = table["energy_error"][numpy.isfinite(table["energy_error"])]
-	return {
-		"peak_q": smooth[peak],
-		"strain_at_peak": table["axial_strain"][peak : peak + width].mean(),
-		"end_q": table["q"][-1],
-		"end_volumetric_strain": table["volumetric_strain_volume"][-1],
-		"start_porosity": table["porosity"][0],
-		"end_porosity": table["porosity"][-1],
-		"start_coordination": table["coordination"][0],
-		"end_coordination": table["coordination"][-1],
-		"largest_energy_error": abs(errors).max() if len(errors) else math.nan,
-	}
 
 
 def status(folder, run):
@@ -104,14 +68,6 @@ def _csv(rows):
 def group(plan, run):
 	"""What runs that differ in their seed alone have in common."""
 	return tuple(run["values"][key] for key in plan["axes"])
-
-
-def halfWidth(values):
-	"""Half of the interval of CONFIDENCE of the mean, by Student's t; nan with fewer than two values. Of rows: of each column."""
-	count = len(values)
-	if count < 2:
-		return numpy.full(numpy.shape(values)[1:], math.nan)
-	return student.ppf(0.5 + CONFIDENCE / 2, count - 1) * numpy.std(values, axis=0, ddof=1) / math.sqrt(count)
 
 
 def _means(plan, rows):

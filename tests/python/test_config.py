@@ -179,6 +179,7 @@ def test_freeKeys():
 		"numerics.threads",
 		"output.vtkEvery",
 		"output.checkpointEvery",
+		"output.report",
 	}
 
 

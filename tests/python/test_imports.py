@@ -8,7 +8,7 @@ import pytest
 
 PACKAGE = pathlib.Path(__file__).parents[2] / "py" / "hexmembrane"
 #: A sub-package imports from itself and from those before it. This is the order of py/hexmembrane/README.md.
-ORDER = ("configuration", "scene", "measure", "output", "laboratory", "run")
+ORDER = ("configuration", "scene", "measure", "output", "laboratory", "report", "run")
 WITHOUT_YADE = (
 	"configuration.schema",
 	"configuration.config",
@@ -31,6 +31,18 @@ WITHOUT_YADE = (
 	"output.plots",
 	"laboratory.curve",
 	"laboratory.misfit",
+	"report.command",
+	"report.curves",
+	"report.encode",
+	"report.libraries",
+	"report.page",
+	"report.profiles",
+	"report.runs",
+	"report.sections",
+	"report.spatial",
+	"report.summary",
+	"report.terminal",
+	"report.verdict",
 	"run.checkpoints",
 	"run.estimate",
 	"run.pressure_watch",

@@ -17,7 +17,7 @@ from tinyTest import command as tinyCommand
 
 SHORT = {"shear": {"strain": 0.002}, "output": {"records": 4, "checkpointEvery": 1, "vtkEvery": 0}}
 #: A shell's background job ignores SIGINT, and so would the tests in it.
-HEEDED = ["env", "--default-signal=INT,TERM"]
+HEEDED = ["env", "--default-signal=INT,TERM,HUP"]
 
 
 class Failing(io.StringIO):
@@ -83,7 +83,7 @@ def test_badInput(tmp_path):
 	assert shell(tmp_path, ">&- 2>&-", tmp_path / "nowhere.yaml").returncode == 2
 
 
-@pytest.mark.parametrize("number, code, words", [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")])
+@pytest.mark.parametrize("number, code, words", [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated"), (signal.SIGHUP, 129, "hung up")])
 def test_whileYadeStarts(tmp_path, number, code, words):
 	"""At moments over the start: no C++ library sees an exception."""
 	script = tmp_path / "script.py"
@@ -99,7 +99,7 @@ def test_whileYadeStarts(tmp_path, number, code, words):
 		assert process.returncode in (code, -number) and error in ("", words + "\n"), error
 
 
-@pytest.mark.parametrize("number, code, words", [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")])
+@pytest.mark.parametrize("number, code, words", [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated"), (signal.SIGHUP, 129, "hung up")])
 def test_inAStage(tmp_path, number, code, words):
 	"""With a checkpoint the advice is to resume from it, and that can be done."""
 	config, out = configure(tmp_path, output={"records": 400, "checkpointEvery": 2, "vtkEvery": 0}), tmp_path / "out"
@@ -113,7 +113,7 @@ def test_inAStage(tmp_path, number, code, words):
 	assert "Traceback" not in error and "terminate called" not in error
 
 
-@pytest.mark.parametrize("raised, code, words", [(KeyboardInterrupt, 130, "interrupted"), (command.Terminated, 143, "terminated")])
+@pytest.mark.parametrize("raised, code, words", [(KeyboardInterrupt, 130, "interrupted"), (command.Terminated, 143, "terminated"), (command.HungUp, 129, "hung up")])
 def test_beforeTheFirstCheckpoint(tmp_path, runHere, monkeypatch, raised, code, words):
 	"""There is nothing to resume from, and the message does not advise it."""
 
@@ -121,11 +121,28 @@ def test_beforeTheFirstCheckpoint(tmp_path, runHere, monkeypatch, raised, code, 
 		raise raised
 
 	monkeypatch.setattr("hexmembrane.scene.specimen.provide", packing)
-	before = signal.getsignal(signal.SIGTERM)
+	handled = signal.SIGTERM, signal.SIGHUP
+	before = [signal.getsignal(number) for number in handled]
 	assert runHere(configure(tmp_path), "--out", tmp_path / "out", "--quiet")[::2] == (code, words + ", there is no checkpoint yet\n")
-	assert signal.getsignal(signal.SIGTERM) is before
+	assert [signal.getsignal(number) for number in handled] == before
 
 
-def test_signalIsRaisedAsTerminated(tmp_path, runHere, monkeypatch):
-	monkeypatch.setattr("hexmembrane.scene.specimen.provide", lambda *_: os.kill(os.getpid(), signal.SIGTERM))
-	assert runHere(configure(tmp_path), "--out", tmp_path / "out")[0] == 143
+@pytest.mark.parametrize("number, code", [(signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+def test_signalIsRaised(tmp_path, runHere, monkeypatch, number, code):
+	before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+	try:
+		monkeypatch.setattr("hexmembrane.scene.specimen.provide", lambda *_: os.kill(os.getpid(), number))
+		assert runHere(configure(tmp_path), "--out", tmp_path / "out")[0] == code
+	finally:
+		signal.signal(signal.SIGHUP, before)
+
+
+def test_ignoredHangUpStaysIgnored():
+	"""Under nohup a closed terminal ends nothing."""
+	before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+	try:
+		with command._terminable():
+			os.kill(os.getpid(), signal.SIGHUP)
+		assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+	finally:
+		signal.signal(signal.SIGHUP, before)

@@ -18,7 +18,7 @@ TINY = {
 	"membrane": {"sizeRatio": 1.0, "young": 3e6, "thickness": 5e-4},
 	"consolidation": {"pressure": 1e5, "friction": 0.2, "unbalanced": 5e-3, "tolerance": 0.1},
 	"shear": {"strain": 0.02, "velocity": 0.08},
-	"output": {"records": 12, "vtkEvery": 6, "checkpointEvery": 4, "consolidationSteps": 400},
+	"output": {"records": 12, "vtkEvery": 6, "checkpointEvery": 4, "consolidationSteps": 400, "report": False},
 }
 GRADATION = "diameter (mm), percent passing\n4, 0\n5, 60\n6, 100\n"
 

@@ -268,6 +268,13 @@ class Consolidation:
 	)
 
 
+def restTolerance(tolerance, boundary, pressureTime):
+	"""``consolidation.tolerance``, or without one what the boundary can hold: without a closed loop the membrane's own tension is on the soil too."""
+	if tolerance is not None:
+		return tolerance
+	return 0.05 if boundary == "membrane" and pressureTime == math.inf else 0.005
+
+
 @dataclasses.dataclass
 class Shear:
 	"""Shearing at constant confining pressure."""
@@ -311,6 +318,7 @@ class Output:
 	vtkEvery: int = key(20, "rows between VTK frames in shear, first and last state always; 0: no VTK", "", low=0, high=10**9, free=True)
 	checkpointEvery: int = key(20, "rows between checkpoints, start of the consolidation and end of each stage always; 0: only there", "", low=0, high=10**9, free=True)
 	energy: bool = key(True, "track energies and record their balance")
+	report: bool = key(True, "write report.html, a page with curves, scene and verdict, at the end of shear (examples/report.md)", free=True)
 
 
 @dataclasses.dataclass

@@ -152,12 +152,13 @@ class Records(tables.Table):
 		super().__init__(path, COLUMNS, keep, "records")
 
 
-def read(path):
+def read(path, damage=None):
 	"""The records as a dict of column name -> numpy array (``stage``: list of text). A last row cut by a kill is left out.
 
+	:param damage: as in :func:`hexmembrane.output.tables.read`.
 	:raises ValueError: no records file, or a row with a wrong number of cells.
 	"""
-	return tables.read(path, _TEXT, "records")
+	return tables.read(path, _TEXT, "records", damage)
 
 
 def markdown():

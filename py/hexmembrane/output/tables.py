@@ -159,26 +159,42 @@ class Table:
 		self.close()
 
 
-def read(path, text=(), name=None):
+def read(path, text=(), name=None, damage=None, needed=("step",)):
 	"""A table as a dict of column name -> numpy array; columns of ``text``: list of text. A last row cut by a kill is left out.
 
 	:param name: what messages call it, without: the file's.
-	:raises ValueError: it has no ``step`` or no column of ``text``, or a row has a wrong number of cells.
+	:param damage: a list: rows from the first damaged one on are left out, and the list gets what is wrong; None: that is an error.
+	:param needed: columns that it must have, beside those of ``text``.
+	:raises ValueError: one of these is not there, or a row has a wrong number of cells or one that is no number.
 	"""
 	name = name or pathlib.Path(path).stem
-	lines = pathlib.Path(path).read_text(encoding="utf-8").split("\n")
+	lines = pathlib.Path(path).read_bytes().decode(errors="replace").split("\n")
 	columns = [header.split(" [")[0] for header in lines[0].split(",")]
-	if not {*text, "step"} <= set(columns):
+	if not {*text, *needed} <= set(columns):
 		raise ValueError(f"{name} = '{path}': has no header of {name}.csv; fix: give the {name}.csv of a test")
-	rows = [line.split(",") for line in lines[1:-1]]
-	for number, row in enumerate(rows, 2):
-		if len(row) != len(columns):
-			raise ValueError(f"{name} = '{path}', line {number}: has {len(row)} cells for {len(columns)} columns; fix: restore the file")
-	table = {}
-	for k, column in enumerate(columns):
-		cells = [row[k] for row in rows]
-		table[column] = cells if column in text else numpy.array([float(cell) for cell in cells])
-	return table
+	rows = []
+	for number, line in enumerate(lines[1:-1], 2):
+		try:
+			rows.append(_cells(columns, text, line))
+		except ValueError as error:
+			wrong = f"{name} = '{path}', line {number}: {error}; fix: restore the file"
+			if damage is None:
+				raise ValueError(wrong) from None
+			damage.append(wrong)
+			break
+	cells = list(zip(*rows)) or [()] * len(columns)
+	return {column: list(values) if column in text else numpy.array(values, dtype=float) for column, values in zip(columns, cells)}
+
+
+def _cells(columns, text, line):
+	"""The cells of a row, numbers but for columns of ``text``."""
+	row = line.split(",")
+	if len(row) != len(columns):
+		raise ValueError(f"has {len(row)} cells for {len(columns)} columns")
+	try:
+		return [cell if column in text else float(cell) for column, cell in zip(columns, row)]
+	except ValueError:
+		raise ValueError("has a cell that is no number") from None
 
 
 def markdown(columns):

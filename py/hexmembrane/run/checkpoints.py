@@ -15,13 +15,13 @@ from hexmembrane.run import manifest
 from hexmembrane.run.manifest import KEPT, CheckpointError, Manifest
 
 RECORDS = "records.csv"
-PICTURE = "test.png"
+PICTURE, REPORT = "test.png", "report.html"
 #: What ``measure`` writes, and all that a test writes besides manifest, lock and checkpoints.
 _INSIDE = ("regions.csv", "profile.csv", "bands.csv", "fields.h5")
-_OWN = ("config.yaml", "packing.txt", RECORDS, PICTURE, "vtk", *_INSIDE, "generated.yade.gz", "consolidated.yade.gz", "sheared.yade.gz", "checkpoint.json")
+_OWN = ("config.yaml", "packing.txt", RECORDS, PICTURE, REPORT, "vtk", *_INSIDE, "generated.yade.gz", "consolidated.yade.gz", "sheared.yade.gz", "checkpoint.json")
 _NUMBERED = re.compile(r"checkpoint-([0-9]+)\.yade")
 #: Names under which files are written before they are renamed.
-_PARTS = ("part-*.yade", "part-*.yade.gz", "config.yaml.part", "packing.txt.*.part", "test.png.part", "fields.h5.part", "manifest.json.part", "vtk/*.part")
+_PARTS = ("part-*.yade", "part-*.yade.gz", "config.yaml.part", "packing.txt.*.part", "test.png.part", "report.html.part", "fields.h5.part", "manifest.json.part", "vtk/*.part")
 
 _REASONS = {
 	errno.ENOSPC: "free space on the disk",

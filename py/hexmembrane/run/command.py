@@ -48,22 +48,34 @@ class Terminated(KeyboardInterrupt):
 	"""The signal SIGTERM, at the end of a chunk of steps."""
 
 
+class HungUp(KeyboardInterrupt):
+	"""The signal SIGHUP, the same: the terminal was closed."""
+
+
+#: What an interruption is called, and the exit code, a shell's.
+_ENDS = {Terminated: ("terminated", 143), HungUp: ("hung up", 129)}
+
+
 @contextlib.contextmanager
 def _terminable():
-	"""Within it SIGTERM raises :class:`Terminated`."""
+	"""Within it SIGTERM raises :class:`Terminated` and SIGHUP :class:`HungUp`, unless the caller has them ignored, as nohup does."""
 
 	def end(number, frame):
-		raise Terminated
+		raise Terminated if number == signal.SIGTERM else HungUp
 
-	before = signal.signal(signal.SIGTERM, end)
+	before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP)}
+	before = {number: handler for number, handler in before.items() if handler is not signal.SIG_IGN}
+	for number in before:
+		signal.signal(number, end)
 	try:
 		yield
 	finally:
-		signal.signal(signal.SIGTERM, before)
+		for number, handler in before.items():
+			signal.signal(number, handler)
 
 
 def main(argv):
-	"""The command line; returns the exit code: 0, 2 for bad input, 1 for a test that failed, 130 when interrupted, 143 when terminated."""
+	"""The command line; returns the exit code: 0, 2 for bad input, 1 for a test that failed, 130 when interrupted, 143 when terminated, 129 when hung up."""
 	arguments = _arguments(argv)
 	out = None
 	try:
@@ -80,7 +92,7 @@ def main(argv):
 		tell(f"error: {error}", sys.stderr)
 		return 1
 	except KeyboardInterrupt as signalled:
-		how, code = ("terminated", 143) if isinstance(signalled, Terminated) else ("interrupted", 130)
+		how, code = _ENDS.get(type(signalled), ("interrupted", 130))
 		tell(how + (": --resume goes on from the last checkpoint" if out and checkpoints.exist(out) else ", there is no checkpoint yet"), sys.stderr)
 		return code
 	return 0

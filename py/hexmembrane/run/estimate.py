@@ -21,6 +21,8 @@ SECONDS = {"compact": 1.1e-3 / 19429, "reference": 29 * 1.1e-3 / 19429}
 PROGRAM, SPHERE = 400e6, 6e3
 #: Disk [bytes] a sphere: a kept state, a last checkpoint, a VTK frame; bytes of a row. Measured with 3,416 spheres.
 STATE, CHECKPOINT, FRAME, ROW = 220, 1000, 120, 1000
+#: Disk [bytes] of a report's page, and of a sphere in one of its frames. Measured with 3,416 and 19,429 spheres.
+PAGE, PAGE_FRAME = 1.3e6, 25
 #: Largest number of steps of the pressure's rise, and of the shear: at 20 us a step, that of a few hundred spheres, they take six hours.
 MOST_STEPS = 10**9
 #: Largest number of threads a processor: more of them only wait for each other.
@@ -115,7 +117,7 @@ class Estimate:
 			shear=sheared,
 			seconds=(consolidation + sheared) * spheres * SECONDS[config.tier],
 			memory=PROGRAM + SPHERE * spheres,
-			disk=spheres * (3 * STATE + 3 * CHECKPOINT + FRAME * frames) + ROW * rows,
+			disk=spheres * (3 * STATE + 3 * CHECKPOINT + FRAME * frames) + ROW * rows + (PAGE + PAGE_FRAME * spheres * frames) * config.output.report,
 		)
 
 	def line(self):

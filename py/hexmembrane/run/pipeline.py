@@ -192,6 +192,19 @@ def _run(config, budget, settled, store, until, start, quiet, say, tell):
 		return _stages(test, until, say)
 
 
+def _report(out, say):
+	"""The page of the test in a folder; a library of it that is not installed is told of."""
+	# a test without a page does not wait for what it needs
+	from hexmembrane.report import page
+	from hexmembrane.report.libraries import LibraryError
+
+	try:
+		page.write(out / checkpoints.REPORT, page.gather([out]))
+		say(f"wrote {out / checkpoints.REPORT}")
+	except LibraryError as error:
+		say(f"no {checkpoints.REPORT}: {error}, or output.report: false")
+
+
 def _stages(test, until, say):
 	if test.stage in ("generated", "consolidation"):
 		test.consolidate()
@@ -200,5 +213,7 @@ def _stages(test, until, say):
 		picture = test.out / checkpoints.PICTURE
 		plot(test.records.path, picture, test.config.title)
 		say(f"wrote {test.records.path}, {picture}" + (f" and {test.frames.folder}" if test.frames.written else ""))
+		if test.config.output.report:
+			_report(test.out, say)
 	say(f"done in {clock(test.elapsed())}")
 	return test

@@ -13,6 +13,7 @@ import time
 from yade import BodyArrays, O
 
 from hexmembrane.configuration import ConfigError
+from hexmembrane.configuration.config import restTolerance
 from hexmembrane.measure import rows
 from hexmembrane.output.frames import Frames
 from hexmembrane.output.records import Records
@@ -25,6 +26,7 @@ from hexmembrane.run.states import Image, load
 from hexmembrane.scene import timestep
 from hexmembrane.scene.builder import checkTimeStep
 from hexmembrane.scene.handles import Scene
+from hexmembrane.scene.timestep import QUASISTATIC
 
 #: Parts that the pressure's smooth rise is divided into; each is 1 % of the time.
 RAMP_PARTS = 100
@@ -34,9 +36,6 @@ _FIRST = 0.01
 _AT_ONCE = 5000
 #: Share of the height that consolidation may take, for what is checked before it.
 _SHORTER = 0.1
-
-#: Largest inertial number of what counts as quasi-static.
-QUASISTATIC = 1e-3
 
 
 class StageError(RuntimeError):
@@ -248,11 +247,7 @@ class TriaxialTest:
 		return errors
 
 	def _tolerance(self):
-		"""The configured one, or what the lateral boundary can hold: without a closed loop the membrane's own tension is on the soil too."""
-		tolerance = self.config.consolidation.tolerance
-		if tolerance is not None:
-			return tolerance
-		return 0.05 if self.config.boundary == "membrane" and self.config.membrane.pressureTime == math.inf else 0.005
+		return restTolerance(self.config.consolidation.tolerance, self.config.boundary, self.config.membrane.pressureTime)
 
 	def _atRest(self, rampTime):
 		keys = self.config.consolidation

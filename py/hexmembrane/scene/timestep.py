@@ -13,6 +13,8 @@ import numpy
 CONTACTS = 8
 #: Grains that press on one membrane sphere at the same time, from one side.
 GRAINS_PER_PARTICLE = 3
+#: Largest inertial number of what counts as quasi-static.
+QUASISTATIC = 1e-3
 
 
 def sphereMass(radius, density):

@@ -1,0 +1,420 @@
+// The specimen in space: grains, lateral boundary, bands; turned by mouse, touch or keys, drawn only when something changes.
+{
+	const MM = 1000,
+		FIELD = 30,
+		SLOW = 40,
+		LEAST = 0.35,
+		TURN = 0.09;
+	const { element } = report;
+	const WANTED = { grains: "", boundary: "", sheet: "back", cut: false, depth: 0, azimuth: 0, bands: true };
+
+	class Scene {
+		constructor(parent, run) {
+			Object.assign(this, { run, data: run.scene, frame: 0, options: { ...WANTED }, ratio: 1, moved: 0 });
+			const { data } = this;
+			this.options.grains = (data.grains.quantities.find((one) => one.name === "shear") ?? data.grains.quantities[0])?.name ?? "";
+			this.options.boundary = data.boundary?.quantities[0]?.name ?? "";
+			const { figure, caption } = report.figure(parent, "Grains and lateral boundary", `${run.name}-scene`, {
+				svg: () => this.svg(),
+				csv: () => this.csv(),
+			});
+			this.figure = figure;
+			this.caption = caption;
+			figure.append(this.tools());
+			this.stage = element("div", {
+				class: "stage",
+				tabindex: 0,
+				role: "application",
+				"aria-label": "The specimen in space. Arrow keys turn it, + and - bring it nearer and farther.",
+			});
+			this.bars = element("div", { class: "bars" });
+			figure.append(this.stage, this.bars);
+			this.begin();
+		}
+
+		tools() {
+			const { data, options } = this;
+			const change = (name, value) => {
+				options[name] = value;
+				this.fill();
+			};
+			const select = (label, name, choices) =>
+				element(
+					"label",
+					{},
+					label,
+					element(
+						"select",
+						{ onchange: (event) => change(name, event.target.value) },
+						...choices.map(([value, text]) => element("option", { value, selected: value === options[name] }, text)),
+					),
+				);
+			const listed = (quantities) => quantities.map((one) => [one.name, one.label]);
+			const slider = (label, name, min, max) =>
+				element(
+					"label",
+					{},
+					label,
+					element("input", { type: "range", min, max, value: options[name], oninput: (event) => change(name, Number(event.target.value)) }),
+				);
+			const box = (label, name) =>
+				element(
+					"label",
+					{},
+					element("input", { type: "checkbox", checked: options[name], onchange: (event) => change(name, event.target.checked) }),
+					label,
+				);
+			const made = element(
+				"div",
+				{ class: "tools" },
+				select("grains coloured by ", "grains", [...listed(data.grains.quantities), ["none", "not shown"]]),
+			);
+			if (data.boundary)
+				made.append(
+					select("boundary ", "sheet", [
+						["back", "its back half"],
+						["whole", "whole"],
+						["glass", "see-through"],
+						["none", "not shown"],
+					]),
+					select("coloured by ", "boundary", listed(data.boundary.quantities)),
+				);
+			made.append(box("cut", "cut"), slider("at ", "depth", -100, 100), slider("turned ", "azimuth", 0, 360));
+			if (data.planes.length) made.append(box("planes of bands", "bands"));
+			for (const [name, direction] of [
+				["front", [0, -1, 0.15]],
+				["side", [1, 0, 0.15]],
+				["top", [0, -0.01, 1]],
+			])
+				made.append(element("button", { type: "button", onclick: () => this.look(direction) }, name));
+			return made;
+		}
+
+		begin() {
+			try {
+				this.renderer = new THREE.WebGLRenderer({ antialias: false, alpha: true, preserveDrawingBuffer: true });
+			} catch (error) {
+				this.stage.replaceWith(
+					element(
+						"p",
+						{ class: "problem" },
+						"This browser draws no scenes (WebGL is not there or switched off). All else of the page works.",
+					),
+				);
+				return;
+			}
+			this.renderer.localClippingEnabled = true;
+			this.stage.append(this.renderer.domElement);
+			this.scene = new THREE.Scene();
+			this.camera = new THREE.PerspectiveCamera(FIELD, 1, 1, 5000);
+			this.camera.up.set(0, 0, 1);
+			this.scene.add(new THREE.HemisphereLight(0xffffff, 0x777777, 0.9));
+			const lamp = new THREE.DirectionalLight(0xffffff, 0.45);
+			lamp.position.set(-0.4, 0.6, 0.8);
+			this.camera.add(lamp);
+			this.scene.add(this.camera);
+			this.controls = new THREE.OrbitControls(this.camera, this.stage);
+			this.controls.enableKeys = false;
+			this.controls.addEventListener("change", () => this.move());
+			this.stage.addEventListener("keydown", (event) => this.key(event));
+			new ResizeObserver(() => this.resize()).observe(this.stage);
+			this.ready = this.load();
+		}
+
+		async load() {
+			const { data } = this;
+			this.radii = (await report.array(data.grains.radius))[0];
+			this.positions = await report.array(data.grains.position);
+			this.spheres = report.spheres(this.radii.length);
+			this.spheres.radius.array.set(this.radii.map((one) => MM * one));
+			this.scene.add(this.spheres.object);
+			if (data.boundary) {
+				this.sheetPositions = await report.array(data.boundary.position);
+				const geometry = new THREE.BufferGeometry(),
+					count = data.boundary.position.shape[1];
+				for (const name of ["position", "color"]) geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * count), 3));
+				geometry.setIndex(new THREE.BufferAttribute(await report.array(data.boundary.triangles), 1));
+				this.clip = new THREE.Plane(new THREE.Vector3(0, 1, 0), 0);
+				this.sheet = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ vertexColors: THREE.VertexColors, side: THREE.DoubleSide }));
+				this.sheet.frustumCulled = false;
+				this.scene.add(this.sheet);
+			}
+			this.planes = new THREE.Group();
+			this.scene.add(this.planes);
+			const box = new THREE.Box3();
+			for (const places of [this.positions, this.sheetPositions ?? []])
+				if (places[0]) box.union(new THREE.Box3().setFromArray(places[0].map((one) => MM * one)));
+			this.centre = box.getCenter(new THREE.Vector3());
+			this.size = box.getSize(new THREE.Vector3());
+			this.look([0.45, -1, 0.28]);
+			await this.fill();
+		}
+
+		// Look from a direction at all of it.
+		look(direction) {
+			if (!this.centre) return;
+			const high = this.size.z / 2,
+				wide = Math.hypot(this.size.x, this.size.y) / 2;
+			const far = (1.08 * Math.max(high, wide / Math.max(this.camera.aspect, 0.2))) / Math.tan((FIELD * Math.PI) / 360) + wide;
+			this.camera.position.copy(new THREE.Vector3(...direction).normalize().multiplyScalar(far).add(this.centre));
+			this.controls.target.copy(this.centre);
+			this.controls.update();
+			this.draw();
+		}
+
+		key(event) {
+			const turn = { ArrowLeft: [-TURN, 0], ArrowRight: [TURN, 0], ArrowUp: [0, -TURN], ArrowDown: [0, TURN] }[event.key];
+			const nearer = { "+": 1 / 1.1, "=": 1 / 1.1, "-": 1.1 }[event.key];
+			if (!turn && !nearer) return;
+			event.preventDefault();
+			const arm = new THREE.Spherical().setFromVector3(
+				this.camera.position
+					.clone()
+					.sub(this.centre)
+					.applyAxisAngle(new THREE.Vector3(1, 0, 0), -Math.PI / 2),
+			);
+			if (turn) {
+				arm.theta += turn[0];
+				arm.phi = Math.max(0.02, Math.min(Math.PI - 0.02, arm.phi + turn[1]));
+			}
+			if (nearer) arm.radius *= nearer;
+			this.camera.position
+				.setFromSpherical(arm)
+				.applyAxisAngle(new THREE.Vector3(1, 0, 0), Math.PI / 2)
+				.add(this.centre);
+			this.controls.update();
+			this.move();
+		}
+
+		// The nearest frame to a strain [-].
+		async show(strain) {
+			this.frame = report.nearest(this.data.strains, strain);
+			await this.ready;
+			await this.fill();
+		}
+
+		quantity(what) {
+			return this.data[what]?.quantities.find((one) => one.name === this.options[what]);
+		}
+
+		async fill() {
+			if (!this.spheres) return;
+			const { frame, options } = this,
+				wanted = (this.wanted = {});
+			const [grains, sheet] = [this.quantity("grains"), this.quantity("boundary")];
+			const [values, sheetValues] = [grains && (await report.array(grains.values))[frame], sheet && (await report.array(sheet.values))[frame]];
+			if (wanted !== this.wanted) return; // another was asked for meanwhile
+			this.values = values;
+			this.place(this.spheres.position.array, this.positions[frame]);
+			this.paint(this.spheres.tint.array, values, grains);
+			this.spheres.object.visible = options.grains !== "none";
+			this.spheres.changed();
+			const angle = (options.azimuth * Math.PI) / 180,
+				normal = new THREE.Vector3(Math.cos(angle), Math.sin(angle), 0);
+			const far = options.cut ? normal.dot(this.centre) + (options.depth / 100) * (this.size.x / 2) : 1e9;
+			this.spheres.material.uniforms.cut.value.set(normal.x, normal.y, 0, far);
+			if (this.sheet) {
+				const { geometry, material } = this.sheet;
+				this.place(geometry.attributes.position.array, this.sheetPositions[frame]);
+				this.paint(geometry.attributes.color.array, sheetValues, sheet);
+				geometry.attributes.position.needsUpdate = geometry.attributes.color.needsUpdate = true;
+				geometry.computeVertexNormals();
+				this.sheet.visible = options.sheet !== "none";
+				const glass = options.sheet === "glass";
+				Object.assign(material, { transparent: glass, opacity: glass ? 0.4 : 1, depthWrite: !glass });
+				material.clippingPlanes = [
+					...(options.sheet === "back" ? [this.clip] : []),
+					...(options.cut ? [new THREE.Plane(normal.clone().negate(), far)] : []),
+				];
+				material.needsUpdate = true;
+			}
+			this.fillPlanes();
+			this.describe(grains, sheet);
+			this.draw();
+		}
+
+		place(to, from) {
+			for (let k = 0; k < to.length; ++k) to[k] = MM * from[k];
+		}
+
+		paint(to, values, quantity) {
+			const colour = quantity ? report.scale(this.map(quantity), quantity.range) : () => [150, 150, 150];
+			for (let k = 0; 3 * k < to.length; ++k) {
+				const one = colour(values ? values[k] : NaN);
+				for (let i = 0; i < 3; ++i) to[3 * k + i] = one[i] / 255;
+			}
+		}
+
+		map(quantity) {
+			return quantity.signed ? "RdBu_r" : "viridis";
+		}
+
+		// Planes of the first step with bands that ends at this strain or later.
+		fillPlanes() {
+			while (this.planes.children.length) this.planes.remove(this.planes.children[0]);
+			const strain = this.data.strains[this.frame],
+				ends = this.data.planes.map((one) => one.strain).filter((one) => one >= strain - 1e-4);
+			if (!this.options.bands || !ends.length) return;
+			const end = Math.min(...ends),
+				width = 1.5 * Math.max(this.size.x, this.size.y);
+			for (const plane of this.data.planes.filter((one) => one.strain === end)) {
+				const [dip, azimuth] = [plane.dip, plane.azimuth].map((one) => (one * Math.PI) / 180);
+				const shape = new THREE.PlaneBufferGeometry(width, width);
+				const face = new THREE.Mesh(
+					shape,
+					new THREE.MeshBasicMaterial({ color: 0xff8c00, transparent: true, opacity: 0.3, side: THREE.DoubleSide, depthWrite: false }),
+				);
+				face.add(new THREE.LineSegments(new THREE.EdgesGeometry(shape), new THREE.LineBasicMaterial({ color: 0xff8c00 })));
+				face.quaternion.setFromUnitVectors(
+					new THREE.Vector3(0, 0, 1),
+					new THREE.Vector3(Math.sin(dip) * Math.cos(azimuth), Math.sin(dip) * Math.sin(azimuth), Math.cos(dip)),
+				);
+				face.position.set(0, 0, MM * (this.data.bottom[this.frame] + plane.height));
+				this.planes.add(face);
+			}
+		}
+
+		describe(grains, sheet) {
+			this.caption.textContent = `${this.run.title}: grains and lateral boundary at ${report.number(100 * this.data.strains[this.frame], 3)} %`;
+			const named = (one) => one.label + (one.unit ? ` [${one.unit}]` : "");
+			this.shown = [
+				["grains", grains],
+				["boundary", this.options.sheet === "none" ? null : sheet],
+			]
+				.filter((one) => one[1])
+				.map(([who, one]) => [`${who}: ${named(one)}`, one]);
+			this.bars.replaceChildren(
+				...this.shown.map(([label, one]) => {
+					const svg = d3
+						.create("svg")
+						.attr("viewBox", "0 0 240 44")
+						.attr("role", "img")
+						.attr("aria-label", `${label}, from ${report.number(one.range[0])} to ${report.number(one.range[1])}`);
+					report.bar(svg, 2, 17, 230, this.map(one), one.range, label);
+					return svg.node();
+				}),
+			);
+		}
+
+		resize() {
+			const { clientWidth, clientHeight } = this.stage;
+			if (!clientWidth || !clientHeight) return;
+			this.camera.aspect = clientWidth / clientHeight;
+			this.camera.updateProjectionMatrix();
+			this.setRatio(this.ratio);
+			this.draw();
+		}
+
+		setRatio(ratio) {
+			this.ratio = ratio;
+			this.renderer.setPixelRatio(ratio * Math.min(window.devicePixelRatio || 1, 2));
+			this.renderer.setSize(this.stage.clientWidth, this.stage.clientHeight, false);
+		}
+
+		// Draw while it is turned: coarser when the browser is slow, fine again at rest.
+		move() {
+			const now = performance.now(),
+				since = now - this.moved;
+			this.moved = now;
+			if (since > SLOW && since < 500 && this.ratio > LEAST) this.setRatio(Math.max(LEAST, 0.8 * this.ratio));
+			clearTimeout(this.rest);
+			this.rest = setTimeout(() => {
+				if (this.ratio < 1) {
+					this.setRatio(1);
+					this.draw();
+				}
+			}, 300);
+			this.draw();
+		}
+
+		draw() {
+			this.pending ??= requestAnimationFrame(() => {
+				this.pending = undefined;
+				this.render();
+			});
+		}
+
+		render() {
+			if (!this.spheres || !this.stage.clientWidth) return;
+			const direction = this.camera.getWorldDirection(new THREE.Vector3());
+			this.spheres.sort(direction);
+			const high = this.renderer.getDrawingBufferSize(new THREE.Vector2()).y;
+			this.spheres.material.uniforms.scale.value = high / (2 * Math.tan((FIELD * Math.PI) / 360));
+			if (this.clip) {
+				const away = new THREE.Vector3(direction.x, direction.y, 0);
+				if (away.lengthSq() > 1e-6) this.clip.setFromNormalAndCoplanarPoint(away.normalize(), this.centre);
+			}
+			this.renderer.render(this.scene, this.camera);
+		}
+
+		// Pictures a second while it is turned, over a number of them.
+		async measure(pictures) {
+			await this.ready;
+			return new Promise((resolve) => {
+				let left = pictures;
+				const start = performance.now(),
+					gl = this.renderer.getContext(),
+					pixel = new Uint8Array(4);
+				const next = () => {
+					if (left-- === 0) {
+						resolve((1000 * pictures) / (performance.now() - start));
+						return;
+					}
+					this.camera.position
+						.sub(this.centre)
+						.applyAxisAngle(new THREE.Vector3(0, 0, 1), TURN)
+						.add(this.centre);
+					this.controls.update();
+					this.render();
+					gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); // waits until it is drawn
+					requestAnimationFrame(next);
+				};
+				next();
+			});
+		}
+
+		svg() {
+			this.render();
+			const { width, height } = this.renderer.domElement,
+				svg = d3.create("svg").attr("viewBox", `0 0 640 ${(640 * height) / width + 70}`);
+			svg.append("text").attr("x", 8).attr("y", 16).text(this.caption.textContent);
+			svg.append("image")
+				.attr("y", 24)
+				.attr("width", 640)
+				.attr("height", (640 * height) / width)
+				.attr("href", this.renderer.domElement.toDataURL());
+			this.shown.forEach(([label, one], k) => report.bar(svg, 8 + 310 * k, (640 * height) / width + 44, 260, this.map(one), one.range, label));
+			this.figure.append(svg.node());
+			const text = report.alone(svg.node());
+			svg.remove();
+			return text;
+		}
+
+		csv() {
+			const position = this.positions[this.frame],
+				grains = this.quantity("grains"),
+				header = ["x [m]", "y [m]", "z [m]", "radius [m]"];
+			if (grains) header.push(grains.label + (grains.unit ? ` [${grains.unit}]` : ""));
+			return report.csv(
+				header,
+				Array.from(this.radii, (radius, k) => [
+					position[3 * k],
+					position[3 * k + 1],
+					position[3 * k + 2],
+					radius,
+					...(grains ? [this.values[k]] : []),
+				]),
+			);
+		}
+
+		dispose() {
+			cancelAnimationFrame(this.pending);
+			clearTimeout(this.rest);
+			this.spheres?.dispose();
+			this.sheet?.geometry.dispose();
+			this.renderer?.dispose();
+			this.renderer?.forceContextLoss();
+		}
+	}
+	report.Scene = Scene;
+}

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the folder of a test holds, whole or not: what cannot be read is left out and told of. Uses nothing of YADE."""
+
+import dataclasses
+import json
+import pathlib
+
+import numpy as np
+
+from hexmembrane.configuration.reader import read as readYaml
+from hexmembrane.output import records, tables
+
+#: Folder of a study's stages under it, and the one of a test in a stage, see scripts/sweep.
+_STUDY, _STAGES, _TEST = "plan.json", "stages", "test"
+#: The strain of a test that has ended is its last row's, to this share.
+_ENDED = 1e-3
+
+
+class ReportError(ValueError):
+	"""There is nothing that a report could be made of."""
+
+
+@dataclasses.dataclass
+class Run:
+	"""A test.
+
+	:param folder: of the test. :param name: in the report. :param config: its keys, nested. :param text: of its config.yaml.
+	:param made: what made it, by name. :param table: of its records, {} without. :param problems: what is missing or damaged, sentences.
+	"""
+
+	folder: pathlib.Path
+	name: str
+	config: dict = dataclasses.field(default_factory=dict)
+	text: str = ""
+	made: dict = dataclasses.field(default_factory=dict)
+	table: dict = dataclasses.field(default_factory=dict)
+	problems: list = dataclasses.field(default_factory=list)
+
+	@property
+	def title(self):
+		return str(self.config.get("title") or self.name)
+
+	def key(self, section, name, default=None):
+		"""A key of the configuration."""
+		values = self.config.get(section)
+		value = values.get(name) if isinstance(values, dict) else None
+		return default if value is None else value
+
+	def rows(self, stage):
+		"""The rows of a stage: column -> array; {} without any."""
+		chosen = np.array([name == stage for name in self.table.get("stage", [])], dtype=bool)
+		return {name: column[chosen] for name, column in self.table.items() if name != "stage"} if chosen.any() else {}
+
+	def state(self):
+		"""'sheared to 12 %', or how far it is."""
+		shear, wanted = self.rows("shear"), self.key("shear", "strain")
+		if not shear:
+			return "consolidation, no shear yet" if self.rows("consolidation") else "no rows yet"
+		strain = shear["axial_strain"][-1]
+		ended = isinstance(wanted, (int, float)) and strain >= (1 - _ENDED) * wanted
+		return f"sheared to {100 * strain:.4g} %" + ("" if ended or wanted is None else f" of {100 * wanted:.4g} %: not at its end")
+
+	@property
+	def ended(self):
+		"""Whether its shear has come to its end."""
+		return self.state().startswith("sheared") and "not at its end" not in self.state()
+
+
+def read(folder, name=None):
+	"""The :class:`Run` in a folder."""
+	folder = pathlib.Path(folder)
+	run = Run(folder, name or folder.resolve().name)
+	_readConfiguration(run)
+	damage = []
+	try:
+		run.table = records.read(folder / "records.csv", damage)
+	except FileNotFoundError:
+		run.problems.append("There is no records.csv: no row has been written yet.")
+	except (OSError, ValueError) as error:
+		run.problems.append(f"records.csv cannot be read: {error}")
+	run.problems += damage
+	if run.table and not run.ended:
+		run.problems.append(f"The test is not at its end: {run.state()}.")
+	return run
+
+
+def _readConfiguration(run):
+	path = run.folder / "config.yaml"
+	try:
+		run.text = path.read_text(encoding="utf-8")
+		found = readYaml(path)
+		if not isinstance(found, dict):
+			raise ValueError("it is no mapping of keys")
+		run.made = found.pop("made", None) or {}
+		run.config = found
+	except FileNotFoundError:
+		run.problems.append("There is no config.yaml: limits are those of the defaults, or unknown.")
+	except (OSError, ValueError) as error:
+		run.problems.append(f"config.yaml cannot be read: {error}")
+	if not isinstance(run.made, dict):
+		run.made = {}
+
+
+def digests(run):
+	"""{file: SHA-256} of the manifest, {} without a readable one."""
+	try:
+		files = json.loads((run.folder / "manifest.json").read_text(encoding="utf-8"))["files"]
+		return {str(name): str(entry["sha256"]) for name, entry in files.items()}
+	except (OSError, ValueError, KeyError, TypeError, AttributeError):
+		return {}
+
+
+def table(run, name, text=()):
+	"""A table such as bands.csv in the run's folder; None without, damage is told of."""
+	damage = []
+	try:
+		return tables.read(run.folder / name, text, damage=damage)
+	except FileNotFoundError:
+		return None
+	except (OSError, ValueError) as error:
+		damage.append(f"{name} cannot be read: {error}")
+		return None
+	finally:
+		run.problems += damage
+
+
+def gather(folders):
+	"""The runs of folders of tests and of studies.
+
+	:raises ReportError: a folder is neither.
+	"""
+	found = []
+	for folder in map(pathlib.Path, folders):
+		if (folder / _STUDY).is_file():
+			found += _study(folder)
+		elif folder.is_dir():
+			if not any((folder / name).exists() for name in ("records.csv", "config.yaml", "manifest.json")):
+				raise ReportError(f"DIR = '{folder}': holds no test and no study; fix: give the output folder of scripts/run or scripts/sweep")
+			found.append(read(folder))
+		else:
+			raise ReportError(f"DIR = '{folder}': there is no such folder; fix: give the output folder of scripts/run or scripts/sweep")
+	return _distinct(found)
+
+
+def _study(folder):
+	try:
+		plan = json.loads((folder / _STUDY).read_text(encoding="utf-8"))
+		places = [(run["name"], folder / _STAGES / run["stages"]["shear"] / _TEST) for run in plan["runs"]]
+	except (OSError, ValueError, KeyError, TypeError) as error:
+		raise ReportError(f"DIR = '{folder}': its plan.json cannot be read ({error!r}); fix: plan the study again with scripts/sweep --dry-run") from None
+	return [read(place, name) for name, place in places]
+
+
+def differences(found):
+	"""Keys in which tests differ, their titles left out: {"key", "values"}, texts."""
+	flat = [{} for _ in found]
+
+	def visit(values, path, into):
+		for name, value in values.items():
+			at = f"{path}.{name}" if path else str(name)
+			if isinstance(value, dict):
+				visit(value, at, into)
+			else:
+				into[at] = str(value)
+
+	for run, into in zip(found, flat):
+		visit({name: value for name, value in run.config.items() if name != "title"}, "", into)
+	keys = list(dict.fromkeys(key for one in flat for key in one))
+	rows = [{"key": key, "values": [one.get(key, "not given") for one in flat]} for key in keys]
+	return [row for row in rows if len(set(row["values"])) > 1]
+
+
+def _distinct(found):
+	"""The runs, each with a name of its own."""
+	seen = {}
+	for run in found:
+		seen[run.name] = seen.get(run.name, 0) + 1
+		if seen[run.name] > 1:
+			run.name = f"{run.name} ({seen[run.name]})"
+	return found

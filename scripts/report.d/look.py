@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""look.py BROWSER OUT PAGE...: opens reports as a reader does and tells what is wrong; screenshots and prints go to OUT. The exit code is 1 when something is."""
+
+import pathlib
+import sys
+
+from browser import Browser, BrowserError, Page
+
+SIZES = {"wide": (1440, 900), "middle": (820, 1100), "narrow": (390, 844)}
+_RIGHT, _LEFT = 39, 37
+#: Least contrast of text with what is behind it (WCAG 2, AA), and of a curve.
+_TEXT, _CURVE = 4.5, 3.0
+#: Text and curves against the card that they are on: the least contrasts of each.
+_CONTRASTS = """(() => {
+	const channel = (one) => { one /= 255; return one <= 0.03928 ? one / 12.92 : ((one + 0.055) / 1.055) ** 2.4; };
+	const light = (colour) => { const c = d3.rgb(colour); return 0.2126 * channel(c.r) + 0.7152 * channel(c.g) + 0.0722 * channel(c.b); };
+	const contrast = (a, b) => { const [low, high] = [light(a), light(b)].sort((p, q) => p - q); return (high + 0.05) / (low + 0.05); };
+	const style = getComputedStyle(document.documentElement), value = (name) => style.getPropertyValue(`--${name}`).trim();
+	const least = (names) => Math.min(...names.map((name) => contrast(value(name), value("card"))));
+	return [least(["ink", "soft", "accent", "good", "bad", "open"]), least([0, 1, 2, 3, 4, 5, 6, 7].map((k) => `line${k}`))];
+})()"""
+_WIDER = "[...document.querySelectorAll('main, section, nav, header')].filter((one) => one.scrollWidth > innerWidth + 1).map((one) => one.id || one.tagName)"
+_UNNAMED = """[...document.querySelectorAll("button, input, select, [role=img], a")]
+	.filter((one) => !(one.textContent.trim() || one.getAttribute("aria-label") || one.labels?.[0]?.textContent.trim()))
+	.map((one) => one.outerHTML.slice(0, 80))"""
+#: Grains of a scene, and pictures a second while it is turned: as fine as the screen, and at half of that.
+_SPEED = """(async () => {
+	const scene = report.state.parts[0], fine = await scene.measure(30);
+	scene.setRatio(0.5);
+	return [scene.radii.length, fine, await scene.measure(30)];
+})()"""
+
+
+def _moves(page, wrong):
+	"""Slider and list of tests by keys."""
+	if page.run("!document.getElementById('slide').hidden"):
+		page.run("document.getElementById('strain').focus()")
+		before = page.run("document.getElementById('at').textContent")
+		page.press("ArrowLeft", _LEFT)
+		page.run("new Promise((done) => setTimeout(done, 500))")
+		if page.run("document.getElementById('at').textContent") == before:
+			wrong.append("the slider does not move by keys")
+	if page.run("report.content.runs.length") > 1:
+		page.run("document.getElementById('run').focus()")
+		page.press("ArrowDown", 40)
+		page.run("new Promise((done) => setTimeout(done, 1500))")
+		name = page.run("report.content.runs[1].name")
+		if page.run("report.state.run.name") != name:
+			wrong.append(f"the list of tests does not pick {name}")
+
+
+def _figures(page, wrong):
+	"""Each figure's SVG and CSV, as its buttons make them."""
+	saved = page.run("""(async () => {
+		const kept = [], before = report.save;
+		report.save = (name, type, text) => kept.push([name, type, text]);
+		for (const button of document.querySelectorAll("figure:not([hidden]) figcaption button")) button.click();
+		report.save = before;
+		const told = (type, text) => type === "text/csv" ? text.split("\\n").length : new DOMParser().parseFromString(text, type).documentElement.nodeName;
+		return kept.map(([name, type, text]) => [name, text.length, told(type, text)]);
+	})()""")
+	for name, size, told in saved:
+		if size < 100 or told == "parsererror" or (name.endswith(".csv") and told < 3):
+			wrong.append(f"{name} has {size} characters and {told}")
+	return len(saved)
+
+
+def look(browser, path, out):
+	"""What is wrong with a page, a list."""
+	wrong, name = [], path.stem
+	for theme in ("light", "dark"):
+		page = Page(browser, path.resolve().as_uri(), SIZES["wide"], theme == "dark")
+		for label, size in SIZES.items():
+			page.resize(*size)
+			page.run("new Promise((done) => setTimeout(done, 400))")
+			page.picture(out / f"{name}-{label}-{theme}.png")
+			if wider := page.run(_WIDER):
+				wrong.append(f"{label}: {wider} are wider than the window")
+		text, curve = page.run(_CONTRASTS)
+		if text < _TEXT or curve < _CURVE:
+			wrong.append(f"{theme}: contrast of text {text:.2f}, of curves {curve:.2f}")
+		if theme == "light":
+			page.resize(*SIZES["wide"])
+			_moves(page, wrong)
+			print(f"{name}: {_figures(page, wrong)} files of figures")
+			if page.run("report.state.parts[0]?.measure !== undefined"):
+				shown, fine, coarse = page.run(_SPEED)
+				print(f"{name}: {shown} grains at {fine:.1f} pictures a second in full, {coarse:.1f} at half of the resolution")
+			if page.run("window.harmed !== undefined"):
+				wrong.append("a text of a test was run")
+			page.pdf(out / f"{name}.pdf")
+		wrong += [f"without a name: {one}" for one in page.run(_UNNAMED)]
+		wrong += page.errors()
+		page.close()
+	return wrong
+
+
+def main(program, out, *pages):
+	out = pathlib.Path(out)
+	out.mkdir(parents=True, exist_ok=True)
+	bad = False
+	with Browser(program) as browser:
+		for path in map(pathlib.Path, pages):
+			try:
+				wrong = look(browser, path, out)
+			except BrowserError as error:
+				wrong = [str(error)]
+			print(f"{path}: " + ("well" if not wrong else "; ".join(wrong)))
+			bad = bad or bool(wrong)
+	return int(bad)
+
+
+if __name__ == "__main__":
+	sys.exit(main(*sys.argv[1:]))
