@@ -238,7 +238,7 @@ def test_aRampIsACosineAndGoesOnAfterALoad(O, tier, kind, tmp_path):
 		found[step] = np.linalg.norm(forcesOn([index])[0])
 	full = found[70]
 	expected = np.array([(ramp(step) + 2 * ramp(step - 20)) / 3 for step in found])
-	assert np.array(list(found.values())) / full == pytest.approx(expected, abs=1e-9)
+	assert np.array(list(found.values())) / full == pytest.approx(expected, abs=1e-7)  # the particles move a little meanwhile
 	if kind is MembranePressure:
 		assert find(kind).applied == 3 * P
 		find(kind).pressure = P
