@@ -20,7 +20,7 @@ import hexmembrane
 import numpy
 from hexmembrane import configuration
 from hexmembrane.output import records
-from hexmembrane.run import run, stages
+from hexmembrane.run import run, states
 from hexmembrane.scene.handles import Scene
 from yade import O
 
@@ -76,7 +76,7 @@ def measured(config, out, until):
 	table = records.read(out / "records.csv")
 	shear = numpy.array([stage == "shear" for stage in table["stage"]])
 	last = int(numpy.flatnonzero(~shear)[-1])
-	stages.load(out / "consolidated.yade.gz")
+	states.load(out / "consolidated.yade.gz")
 	radius = Scene().lateralBoundary.membrane.sphereRadius
 	numbers = {name: column for name, column in table.items() if name != "stage"}
 	return {name: column[last] for name, column in numbers.items()}, {name: column[shear] for name, column in numbers.items()}, radius

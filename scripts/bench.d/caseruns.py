@@ -15,7 +15,7 @@ import unittest.mock
 import numpy
 from hexmembrane.configuration import Config, ConfigError
 from hexmembrane.output import records, vtk
-from hexmembrane.run import checkpoints, stages
+from hexmembrane.run import checkpoints, stages, states
 from hexmembrane.run.pipeline import run as runTest
 from yade import BodyArrays, O
 
@@ -119,7 +119,7 @@ def notFinite(out):
 		found += not all(numpy.isfinite(values).all() for values in (points, *ofPoints.values(), *ofCells.values()))
 	for file in [*out.glob("*.yade"), *out.glob("*.yade.gz")]:
 		O.reset()
-		stages.load(file)
+		states.load(file)
 		ids = [body.id for body in O.bodies]
 		found += not all(numpy.isfinite(values).all() for values in (BodyArrays.positions(ids), BodyArrays.velocities(ids)))
 	return float(found)

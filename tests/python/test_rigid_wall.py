@@ -111,10 +111,10 @@ def test_stateOfAnotherBoundary(whole, tmp_path, runHere):
 def test_contactsAndEscape(whole, O):
 	"""The grains' contacts are PFC's by modulus, those with the wall are smooth, and a grain beyond the wall is named."""
 	from hexmembrane.measure import rows
-	from hexmembrane.run import stages
+	from hexmembrane.run import states
 	from hexmembrane.scene.handles import Scene
 
-	stages.load(whole[0] / "sheared.yade.gz")
+	states.load(whole[0] / "sheared.yade.gz")
 	O.step()
 	handles = Scene()
 	handles.exportContacts()

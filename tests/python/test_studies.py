@@ -10,7 +10,7 @@ import re
 import numpy
 import pytest
 from hexmembrane.output import records
-from hexmembrane.run import stages
+from hexmembrane.run import states
 from hexmembrane.scene.handles import Scene
 from PIL import Image
 
@@ -67,7 +67,7 @@ def test_studysTests(O, paper, name):
 	# The energy of the packing under stress is there before the first work, and none of it is lost.
 	assert abs(table["energy_error"][shear]).max() < 1e-4
 	assert abs(table["energy_error"][~shear][-1]) < (1e-4 if name.startswith("rigid") else 1e-2)
-	stages.load(folder / "sheared.yade.gz")
+	states.load(folder / "sheared.yade.gz")
 	O.step()
 	Scene().exportContacts()
 	rolling = {round(c.phys.rollingArm / (c.geom.refR1 * c.geom.refR2 / (c.geom.refR1 + c.geom.refR2)), 9) for c in O.interactions}

@@ -7,7 +7,7 @@ import numpy
 import pytest
 from hexmembrane import configuration
 from hexmembrane.output import records
-from hexmembrane.run import stages
+from hexmembrane.run import states
 from hexmembrane.scene import packing_file, specimen
 from hexmembrane.scene.builder import setTier
 from hexmembrane.scene.handles import Scene
@@ -80,7 +80,7 @@ def test_changesTierOnResume(O, packing, tmp_path, first, then):
 	table = records.read(tmp_path / "out" / "records.csv")
 	shear = numpy.array([stage == "shear" for stage in table["stage"]])
 	assert numpy.abs(table["q"][shear] - whole["q"]).max() < 0.02 * numpy.abs(whole["q"]).max()
-	stages.load(tmp_path / "out" / "sheared.yade.gz")
+	states.load(tmp_path / "out" / "sheared.yade.gz")
 	assert ("CompactLoop" in [type(engine).__name__ for engine in O.engines]) == (then == "compact")
 
 

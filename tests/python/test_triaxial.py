@@ -11,7 +11,7 @@ import pytest
 import yaml
 from hexmembrane.measure import profile
 from hexmembrane.output import records, vtk
-from hexmembrane.run import stages
+from hexmembrane.run import states
 from hexmembrane.scene.handles import Scene
 from PIL import Image
 from tinyTest import command, configure, environment, runOutside
@@ -64,7 +64,7 @@ def test_whatTheMembraneCarries(whole):
 def test_stressAlongTheHeight(whole, O):
 	out, _ = whole
 	last = {name: column[-1] for name, column in records.read(out / "records.csv").items()}
-	stages.load(out / "sheared.yade.gz")
+	states.load(out / "sheared.yade.gz")
 	O.step()
 	handles = Scene()
 	found, one = (profile.measure(handles, count) for count in (6, 1))
@@ -87,7 +87,7 @@ def test_stressAlongTheHeight(whole, O):
 
 def test_forcesThroughMidHeight(whole, O):
 	"""F + P + T_mid - T_end, as recorded, is the sum of the contact forces through the cut: that of the specimen at rest after consolidation."""
-	stages.load(whole[0] / "consolidated.yade.gz")
+	states.load(whole[0] / "consolidated.yade.gz")
 	for drive in Scene().bottomDrive, Scene().topDrive:
 		drive.velocity = 0
 	O.run(3000, True)
@@ -290,7 +290,7 @@ def test_grainOutsideIsSeen(whole, O):
 	"""A grain put outside the membrane, or behind a platen, is named."""
 	from hexmembrane.measure import rows
 
-	stages.load(whole[0] / "sheared.yade.gz")
+	states.load(whole[0] / "sheared.yade.gz")
 	handles = Scene()
 	grains = rows.Grains.of(handles.grainIds())
 	assert rows.escaped(handles, grains) is None
@@ -304,7 +304,7 @@ def test_frictionAfterConsolidation(whole, O):
 	"""Contacts made with the consolidation's friction have the test's own in shear, those of the membrane have none; all are PFC's by modulus."""
 	from yade import Sphere
 
-	stages.load(whole[0] / "consolidated.yade.gz")
+	states.load(whole[0] / "consolidated.yade.gz")
 	O.step()
 	handles = Scene()
 	handles.exportContacts()

@@ -39,7 +39,7 @@ class Consolidation(Stage):
 		test.checkpoint()
 
 	def run(self):
-		"""As :meth:`Stage.run`.
+		"""As :meth:`hexmembrane.run.stage.Stage.run`.
 
 		:raises StageError: not at rest after maxSteps, the state it reached is the checkpoint; or a servo did not reach its target within
 			timeLimit, the checkpoint is the last one before.

@@ -12,7 +12,7 @@ from hexmembrane.configuration import Config, ConfigError, toDict
 from hexmembrane.configuration.schema import freeKeys
 from hexmembrane.configuration.stages import plan
 from hexmembrane.output.plots import plot
-from hexmembrane.run import checkpoints, estimate, from_state, progress, stages
+from hexmembrane.run import checkpoints, estimate, from_state, progress, stages, states, straining
 from hexmembrane.run.checkpoints import FolderError, Store
 from hexmembrane.run.lock import FolderLock
 from hexmembrane.run.manifest import CheckpointError
@@ -116,7 +116,7 @@ def check(config, out, start=None, say=progress.tell):
 	if start is not None:
 		_wantOwnSettings(config)
 		own = from_state.adopt(config, start, say)
-		stages.load(start)
+		states.load(start)
 		from_state.require(config, start)
 	prepare(config, out, say)
 	Store.requireFree(out)
@@ -185,12 +185,12 @@ def _run(config, budget, settled, store, until, start, own, quiet, say, tell):
 		say(f"resumed in {resumed.checkpoint.stage} after {resumed.rows} rows, step {O.iter}")
 		test = stages.TriaxialTest(config, out, quiet, store, resumed)
 	elif start is not None:
-		stages.load(start)
+		states.load(start)
 		from_state.require(config, start)
 		builder.setTier(config)
 		from_state.apply(config, own, say)
 		O.trackEnergy = config.output.energy
-		stages.checkRows(config)
+		straining.checkRows(config)
 		configuration.save(config, out / "config.yaml", budget=budget.asDict())
 		store.seal("config.yaml")
 		test = stages.TriaxialTest(config, out, quiet, store)
@@ -205,7 +205,7 @@ def _run(config, budget, settled, store, until, start, own, quiet, say, tell):
 			return None
 		O.reset()
 		builder.build(config, packing, say)
-		stages.checkRows(config)
+		straining.checkRows(config)
 		test = stages.TriaxialTest(config, out, quiet, store)
 		if until == "boundary":
 			test.checkpoint("generated")

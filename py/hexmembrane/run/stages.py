@@ -20,11 +20,9 @@ from hexmembrane.run.consolidation import Consolidation
 from hexmembrane.run.inside import Inside
 from hexmembrane.run.manifest import Checkpoint, Entry
 from hexmembrane.run.stage import StageError
-from hexmembrane.run.states import Image, load
-from hexmembrane.run.straining import Resting, Straining, checkRows
+from hexmembrane.run.states import Image
+from hexmembrane.run.straining import Resting, Straining
 from hexmembrane.scene.handles import Scene
-
-__all__ = ["StageError", "TriaxialTest", "checkRows", "load"]
 
 #: Steps that YADE is asked for at once: a signal waits for their end. A multiple of the usual numerics.substeps.
 _AT_ONCE = 5000
