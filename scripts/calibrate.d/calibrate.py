@@ -3,9 +3,7 @@
 
 import argparse
 import json
-import os
 import pathlib
-import signal
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -29,12 +27,7 @@ def _arguments(argv):
 	parser = argparse.ArgumentParser(prog="scripts/calibrate", description="Calibrates grains on laboratory curves.")
 	parser.add_argument("calibration", metavar="CALIBRATION", help="YAML file, see examples/calibrate/README.md")
 	parser.add_argument("--out", metavar="DIR", help="folder (default: out/calibrate/NAME OF CALIBRATION)")
-	parser.add_argument("--cores", type=int, default=len(os.sched_getaffinity(0)), metavar="N", help="tests at a time, one thread each (default: one a processor)")
-	parser.add_argument("--dry-run", action="store_true", help="check everything, say what it costs, run nothing")
-	parser.add_argument("--again", action="store_true", help="try failed stages again")
-	parser.add_argument("--slurm", action="store_true", help="as scripts/sweep")
-	parser.add_argument("--profile", metavar="DIR", help="as scripts/sweep")
-	parser.add_argument("--snakemake", action="append", default=[], metavar="OPTION", help="as scripts/sweep")
+	sweep.addRunning(parser)
 	given = parser.parse_args(argv)
 	if given.cores < 1:
 		parser.error("--cores: a whole number of at least 1 is needed")
@@ -156,33 +149,17 @@ def announce(calibration, cores, say):
 	say(f"about {seconds / 3600:.2g} core hours, {clock(seconds / cores)} on {cores} cores")
 
 
-def _stop(*_):
-	raise KeyboardInterrupt
-
-
 def main(argv):
 	"""Exit code: 0; 1 when a test failed; 2 for bad input; 130 when interrupted."""
 	arguments = _arguments(argv)
-	signal.signal(signal.SIGTERM, _stop)
-	signal.signal(signal.SIGINT, _stop)
 
-	def say(text):
-		print(text, flush=True)
-
-	try:
+	def whole(say):
 		calibration = calibrationfile.load(arguments.calibration)
 		folder = pathlib.Path(arguments.out or pathlib.Path("out", "calibrate", pathlib.Path(arguments.calibration).name.removesuffix(".yaml"))).absolute()
 		announce(calibration, arguments.cores, say)
 		return 0 if arguments.dry_run else calibrate(calibration, folder, arguments, say)
-	except ConfigError as error:
-		print(f"error: {error}", file=sys.stderr)
-		return 2
-	except (OSError, ValueError, RuntimeError) as error:
-		print(f"error: {error}", file=sys.stderr)
-		return 1
-	except KeyboardInterrupt:
-		print("interrupted: the same command goes on", file=sys.stderr)
-		return 130
+
+	return sweep.guarded(whole)
 
 
 if __name__ == "__main__":

@@ -29,18 +29,23 @@ _RESTARTS = 3
 _LOOK = 0.3
 
 
+def addRunning(parser):
+	"""The options of how tests are run."""
+	parser.add_argument("--cores", type=int, default=len(os.sched_getaffinity(0)), metavar="N", help="tests at a time, one thread each (default: one a processor)")
+	parser.add_argument("--dry-run", action="store_true", help="check everything, say what it costs, run nothing")
+	parser.add_argument("--again", action="store_true", help="try failed stages again")
+	parser.add_argument("--slurm", action="store_true", help="jobs go to the queue of Slurm; --cores is then the number of jobs in it at a time")
+	parser.add_argument("--profile", metavar="DIR", help="a profile of Snakemake, for a cluster")
+	parser.add_argument("--snakemake", action="append", default=[], metavar="OPTION", help="an option for Snakemake, as --snakemake=--printshellcmds; may be repeated")
+
+
 def _arguments(argv):
 	parser = argparse.ArgumentParser(prog="scripts/sweep", description="Runs a study: a base configuration, axes and seeds.")
 	parser.add_argument("study", metavar="STUDY", nargs="?", help="YAML file of the study, see examples/sweep/README.md")
 	parser.add_argument("--out", metavar="DIR", help="folder of the study (default: out/sweep/NAME OF STUDY)")
-	parser.add_argument("--cores", type=int, default=len(os.sched_getaffinity(0)), metavar="N", help="tests at a time, one thread each (default: one a processor)")
-	parser.add_argument("--dry-run", action="store_true", help="check the study, say what it costs, run nothing")
-	parser.add_argument("--again", action="store_true", help="try failed stages again")
+	addRunning(parser)
 	parser.add_argument("--verify", metavar="ARCHIVE", help="run a part of a study.tar.gz again and compare")
 	parser.add_argument("--runs", type=int, default=1, metavar="N", help="with --verify: how many of its tests (1)")
-	parser.add_argument("--slurm", action="store_true", help="jobs go to the queue of Slurm; --cores is then the number of jobs in it at a time")
-	parser.add_argument("--profile", metavar="DIR", help="a profile of Snakemake, for a cluster")
-	parser.add_argument("--snakemake", action="append", default=[], metavar="OPTION", help="an option for Snakemake, as --snakemake=--printshellcmds; may be repeated")
 	given = parser.parse_args(argv)
 	if (given.study is None) == (given.verify is None):
 		parser.error("give a STUDY, or --verify ARCHIVE")
@@ -203,25 +208,12 @@ def _stop(*_):
 	raise KeyboardInterrupt
 
 
-def main(argv):
-	"""Exit code: 0; 1 when a run is not done or a verification fails; 2 for bad input; 130 when interrupted."""
-	arguments = _arguments(argv)
+def guarded(does):
+	"""Exit code of ``does(say)``, a command on tests that goes on when it is called again: 2 for bad input, 1 for another failure, 130 when interrupted."""
 	signal.signal(signal.SIGTERM, _stop)
 	signal.signal(signal.SIGINT, _stop)
-
-	def say(text):
-		print(text, flush=True)
-
 	try:
-		if arguments.verify:
-			return verify(arguments, say)
-		made = studyfile.load(arguments.study)
-		plan, inputs = plans.make(made)
-		folder = pathlib.Path(arguments.out or pathlib.Path("out", "sweep", pathlib.Path(arguments.study).name.removesuffix(".yaml"))).absolute()
-		if arguments.dry_run:
-			announce(plan, folder, arguments.cores, say)
-			return 0
-		return execute(plan, inputs, folder, arguments, say)
+		return does(lambda text: print(text, flush=True))
 	except ConfigError as error:
 		print(f"error: {error}", file=sys.stderr)
 		return 2
@@ -231,6 +223,23 @@ def main(argv):
 	except KeyboardInterrupt:
 		print("interrupted: the same command goes on", file=sys.stderr)
 		return 130
+
+
+def main(argv):
+	"""Exit code: 0; 1 when a run is not done or a verification fails; 2 for bad input; 130 when interrupted."""
+	arguments = _arguments(argv)
+
+	def study(say):
+		if arguments.verify:
+			return verify(arguments, say)
+		plan, inputs = plans.make(studyfile.load(arguments.study))
+		folder = pathlib.Path(arguments.out or pathlib.Path("out", "sweep", pathlib.Path(arguments.study).name.removesuffix(".yaml"))).absolute()
+		if arguments.dry_run:
+			announce(plan, folder, arguments.cores, say)
+			return 0
+		return execute(plan, inputs, folder, arguments, say)
+
+	return guarded(study)
 
 
 if __name__ == "__main__":
