@@ -139,6 +139,7 @@ def setHeader(**changes):
 		(setHeader(origin=[0, 0]), "'origin' is"),
 		(setHeader(origin=[1, 2, 3.01]), "beyond the cylinder"),
 		(setHeader(units="mm"), "units 'mm'"),
+		(setHeader(units="9" * 2000), r"units '9+ \.\.\. 9+', only 'm' is known"),
 		(setHeader(porosity=0.4), "line 2: porosity 0.4, the spheres make 0.333"),
 		(setHeader(maxOverlap=-1), "'maxOverlap' is -1"),
 		(setHeader(radius=0.29), "beyond the cylinder"),

@@ -266,11 +266,11 @@ def _header(text, wrong):
 		if not _isNumber(header[key]) or header[key] < 0:
 			wrong(2, f"'{key}' is {shown(header[key])}, not a finite number >= 0")
 	if isinstance(header["grains"], bool) or not isinstance(header["grains"], int) or header["grains"] < 1:
-		wrong(2, f"'grains' is {header['grains']!r}, not a number of spheres")
+		wrong(2, f"'grains' is {shown(header['grains'])}, not a number of spheres")
 	if not isinstance(header["origin"], list) or len(header["origin"]) != 3 or not all(_isNumber(v) for v in header["origin"]):
-		wrong(2, f"'origin' is {header['origin']!r}, not three finite numbers")
+		wrong(2, f"'origin' is {shown(header['origin'])}, not three finite numbers")
 	if header["units"] != "m":
-		wrong(2, f"units {header['units']!r}, only 'm' is known")
+		wrong(2, f"units {shown(header['units'])}, only 'm' is known")
 	return header
 
 
