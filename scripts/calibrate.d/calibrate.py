@@ -135,6 +135,8 @@ def calibrate(calibration, folder, arguments, say):
 		evaluations, failed, weight = (_bayes if calibration.method == "bayes" else _best)(search, say)
 		sets = search.sets(calibration.generations)
 		tests.gather(sets)
+		best = sets[int(evaluations.logLikelihood().argmax())]
+		report.writeMisfit(calibration, folder, tests.series([best])[0][best[0]])
 		report.write(calibration, folder, sets, evaluations, weight, failed, say)
 	return 1 if failed else 0
 

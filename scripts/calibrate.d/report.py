@@ -10,11 +10,12 @@ import numpy
 import sampling
 from hexmembrane import configuration
 from hexmembrane.configuration import derived
+from hexmembrane.laboratory import misfit
 from plan import writeText
 from scipy.stats import norm
 import studyfile
 
-SETS, POSTERIOR, BEST, GRAINLEARNING = "sets.csv", "posterior.json", "best.yaml", "grainlearning"
+SETS, POSTERIOR, BEST, MISFIT, GRAINLEARNING = "sets.csv", "posterior.json", "best.yaml", "misfit.csv", "grainlearning"
 #: Share of the intervals; a parameter whose posterior is wider than this share of its prior is not determined.
 CONFIDENCE, DETERMINED = 0.95, 0.6
 _STEPS = 25
@@ -83,7 +84,23 @@ def write(calibration, folder, sets, evaluations, weight, failed, say):
 		say(f"failed: {text}")
 	_drawPredictions(calibration, evaluations, weight, best, folder / "prediction.png")
 	_grainLearning(calibration, sets, evaluations, folder / GRAINLEARNING)
-	say(f"written into {folder}: {SETS}, {POSTERIOR if calibration.method == 'bayes' else BEST}, best configurations, pictures, {GRAINLEARNING}/")
+	say(f"written into {folder}: {SETS}, {POSTERIOR if calibration.method == 'bayes' else BEST}, best configurations, {MISFIT}, pictures, {GRAINLEARNING}/")
+
+
+def writeMisfit(calibration, folder, series):
+	"""How far the best set is from each laboratory curve, mean over its packings; ``series``: {curve: [series of a seed]}."""
+	text = io.StringIO()
+	writer = csv.writer(text, lineterminator="\n")
+	writer.writerow(["curve", "number", "unit", "laboratory", "best set", "difference"])
+	for name, test in calibration.tests.items():
+		pressure = test.config.consolidation.pressure
+		for rows in zip(*(misfit.numbers(test.curve, one, pressure) for one in series[name])):
+			mean = float(numpy.mean([row.test for row in rows]))
+			writer.writerow([name, rows[0].name, rows[0].unit, f"{rows[0].laboratory:.6g}", f"{mean:.6g}", f"{mean - rows[0].laboratory:.6g}"])
+		apart = [misfit.rootMeanSquare(test.curve, one) for one in series[name]]
+		for quantity in apart[0]:
+			writer.writerow([name, f"root mean square of {quantity}", "-", "", "", f"{float(numpy.mean([one[quantity] for one in apart])):.6g}"])
+	writeText(folder / MISFIT, text.getvalue())
 
 
 def _table(calibration, sets, logs, weight, failed):

@@ -118,6 +118,8 @@ def test_bestFit(tmp_path, madeUp):
 	rows = (out / "sets.csv").read_text(encoding="utf-8").splitlines()
 	best = next(row.split(",") for row in rows[1:] if row.split(",")[4] == "1.0")
 	assert abs(float(best[1]) - 0.5) < 0.1 and abs(float(best[2]) - 0.2) < 0.1
+	numbers = [row.split(",") for row in (out / "misfit.csv").read_text(encoding="utf-8").splitlines()[1:]]
+	assert len(numbers) == 8 and abs(float(numbers[0][5])) < 0.5 and numbers[0][1] == "peak of sigma1/sigma3"
 	assert (out / "best.yaml").is_file() and (out / "prediction.png").is_file() and not (out / "posterior.json").exists()
 
 

@@ -20,10 +20,6 @@ class Number:
 	laboratory: float
 	test: float
 
-	@property
-	def difference(self):
-		return self.test - self.laboratory
-
 
 def ofTest(table):
 	"""A test's series as a laboratory would have them, from the records of its shear (dict of arrays).
