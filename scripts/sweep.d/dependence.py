@@ -111,6 +111,7 @@ TABLE = {
 	"numerics.*": _ALWAYS[CONSOLIDATION],
 	"output.records": _ALWAYS[SHEAR],
 	"output.vtkEvery": (),
+	"output.contacts": (),
 	"output.report": (),
 	"output.checkpointEvery": (At(CONSOLIDATION, _reference),),  # there a test goes on from what it has saved
 	"output.*": _ALWAYS[CONSOLIDATION],

@@ -288,6 +288,7 @@ class Output:
 	records: int = key(120, "rows of records.csv in shear", "", low=1, high=1000000)
 	consolidationSteps: int = key(500, "steps between rows in consolidation", "", low=1, high=10**9)
 	vtkEvery: int = key(20, "rows between VTK frames in shear, first and last state always; 0: no VTK", "", low=0, high=10**9, free=True)
+	contacts: bool = key(True, "the soil's contacts with their forces in each VTK frame: lines for ParaView, force chains in report.html", free=True)
 	checkpointEvery: int = key(20, "rows between checkpoints, start of the consolidation and end of each stage always; 0: only there", "", low=0, high=10**9, free=True)
 	energy: bool = key(True, "track energies and record their balance")
 	report: bool = key(True, "write report.html, a page with curves, scene and verdict, at the end of shear (examples/report.md)", free=True)

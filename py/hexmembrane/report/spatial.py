@@ -9,7 +9,7 @@ from typing import Callable
 import numpy as np
 
 from hexmembrane.output import vtk
-from hexmembrane.report import encode, profiles
+from hexmembrane.report import chains, encode, profiles
 from hexmembrane.report.runs import table
 
 _FRAME = re.compile(r'timestep="([^"]+)" part="0" file="([^"/]+)"')
@@ -135,7 +135,8 @@ def bytesOf(run):
 	if not listed:
 		return 0
 	first = [(_points(path), names) for path, names in zip(listed[0][1:], (GRAINS, BOUNDARY)) if path is not None and path.is_file()]
-	return _BYTES * len(listed) * sum(count * (3 + len(names)) for count, names in first)
+	contacts = next(iter(dict(_series(run, "contacts")).values()), None)
+	return _BYTES * len(listed) * (sum(count * (3 + len(names)) for count, names in first) + (chains.NUMBERS * chains.countOf(contacts) if contacts else 0))
 
 
 def _points(path):
@@ -173,6 +174,12 @@ def scene(run, every=1):
 		found["profile"] = profiles.ofFrames(boundaries, found["strains"])
 	elif any(path for _, _, path in whole):
 		run.problems.append("Not every frame has its lateral boundary: it is left out of the scene.")
+	contacts = dict(_series(run, "contacts"))
+	if contacts:
+		if missing := sum(time not in contacts for time, _, _ in whole):
+			run.problems.append(f"{missing} of {len(whole)} frames have no contacts: there are no force chains.")
+		else:
+			found["chains"] = chains.ofFrames(run, [contacts[time] for time, _, _ in whole])
 	found["bottom"] = encode.numbers([(points[:, 2] - arrays["radius"]).min() for points, _, arrays in grains])
 	found["planes"] = _planes(run)
 	return found
