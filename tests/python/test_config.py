@@ -180,6 +180,7 @@ def test_freeKeys():
 		"numerics.threads",
 		"output.vtkEvery",
 		"output.checkpointEvery",
+		"output.contacts",
 		"output.report",
 	}
 

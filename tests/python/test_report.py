@@ -52,7 +52,10 @@ def makeTest(folder, rows=11, frames=3, grains=30, seed=1, title="a test", last=
 		vtk.write(folder / "vtk" / f"grains-{k:04d}.vtp", grainsAt + moved, pointData=ofGrains)
 		ofSheet = {"group": np.full(sheet, 3), "pressure": np.full(sheet, 1e5), "normal_displacement": np.full(sheet, 1e-3 * k)}
 		vtk.write(folder / "vtk" / f"membrane-{k:04d}.vtp", sheetAt + jitter * random.normal(size=(sheet, 3)), triangles, ofSheet, {"hoop_tension": np.arange(sheet / 3)})
-	for name in ("grains", "membrane"):
+		ends = grainsAt[random.integers(0, grains, (3 * grains, 2))].astype(np.float32)
+		forces = random.exponential(size=3 * grains).astype(np.float32)
+		vtk.write(folder / "vtk" / f"contacts-{k:04d}.vtp", ends, np.arange(6 * grains).reshape(-1, 2), {"normal_force": np.repeat(forces, 2)})
+	for name in ("grains", "membrane", "contacts"):
 		vtk.series(folder / "vtk" / f"{name}.pvd", [(0.05 * k, f"{name}-{k:04d}.vtp") for k in range(frames)])
 	return folder
 
@@ -90,6 +93,22 @@ def test_whatIsGathered(tmp_path):
 	tension = decoded(next(one["values"] for one in scene["boundary"]["quantities"] if one["name"] == "hoop_tension"))
 	assert np.allclose(tension[0, :, 0], np.repeat(np.arange(4.0), 3), atol=1e-4)
 	assert len(run["profile"]["radius"]) == 3 and run["clouds"] is None
+
+
+def test_forceChainsAreTheStrongestContacts(tmp_path):
+	folder = makeTest(tmp_path / "a")
+	points, lines, arrays, _ = vtk.read(folder / "vtk" / "contacts-0001.vtp")
+	forces = arrays["normal_force"][::2]
+	strongest = np.argsort(-forces)[:45]
+	one = page.gather([folder])["runs"][0]["scene"]["chains"][1]
+	assert one["all"] == 90 and one["mean"] == pytest.approx(forces.mean(), rel=1e-5)
+	assert np.allclose(decoded(one["force"])[0, :, 0], forces[strongest] / forces.mean(), atol=1e-4)
+	assert np.allclose(decoded(one["ends"])[0], points.reshape(-1, 6)[strongest], atol=1e-6)
+	without = makeTest(tmp_path / "b")
+	(without / "vtk" / "contacts.pvd").unlink()
+	(run,) = page.gather([without])["runs"]
+	assert "chains" not in run["scene"] and run["problems"] == []
+	assert spatial.bytesOf(runs.read(folder)) - spatial.bytesOf(runs.read(without)) == 2 * 3 * 7 * 45
 
 
 def states(run, scatter=None):
@@ -207,6 +226,8 @@ def harm(folder, what):
 		(folder / "config.yaml").write_bytes(b"\xff\x00: [")
 	elif what == "frame of bytes":
 		(folder / "vtk" / "grains-0001.vtp").write_bytes(b"no XML")
+	elif what == "contacts of bytes":
+		(folder / "vtk" / "contacts-0001.vtp").write_bytes(b"no XML")
 	elif what == "no frame":
 		(folder / "vtk" / "membrane-0001.vtp").unlink()
 	elif what == "fields of bytes":
@@ -225,6 +246,7 @@ def harm(folder, what):
 		"no configuration",
 		"configuration of bytes",
 		"frame of bytes",
+		"contacts of bytes",
 		"no frame",
 		"fields of bytes",
 		"profile of bytes",

@@ -13,7 +13,7 @@ import pathlib
 
 import hexmembrane
 from hexmembrane.report import curves, libraries, profiles, runs, sections, spatial, verdict
-from hexmembrane.report.encode import script
+from hexmembrane.report.encode import numbers, script
 from hexmembrane.report.summary import halfWidth, quantities
 
 _SOURCES = pathlib.Path(__file__).with_name("page")
@@ -27,6 +27,13 @@ def _scatter(group):
 	return float(halfWidth(peaks)) * len(peaks) / sum(peaks), len(peaks)
 
 
+def _rowsOfStages(run):
+	"""Of a test with a list of stages the time [s], strain and stage of each row, which tell where the slider is; None of another test."""
+	if not run.staged or not run.table:
+		return None
+	return {"time": numbers(run.table["time"]), "strain": numbers(run.table["axial_strain"]), "stage": [str(name) for name in run.table["stage"]]}
+
+
 def _content(run, group, every):
 	"""All that the page tells of a test. What reads files comes first: it adds to the run's problems."""
 	scene = spatial.scene(run, every)
@@ -38,6 +45,7 @@ def _content(run, group, every):
 		"folder": str(run.folder),
 		"state": run.state(),
 		"curves": curves.ofRun(run),
+		"stages": _rowsOfStages(run),
 		"scene": scene,
 		"clouds": sections.ofRun(run),
 		"profile": profile,

@@ -19,7 +19,7 @@ def measured(run):
 	states = [found["step"] == found["step"][k] for k in first]
 	columns = {"height": 1e3, "radius": 1e3, "axial": 1e-3, "radial": 1e-3}
 	return {
-		"strains": encode.numbers(found["axial_strain"][first]),
+		"strains": encode.numbers(run.at(found["axial_strain"][first], found["step"][first])),
 		"from": "profile.csv: slices of the soil",
 		**{name: [encode.numbers(factor * found[name][rows]) for rows in states] for name, factor in columns.items()},
 	}

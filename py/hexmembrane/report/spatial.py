@@ -71,8 +71,10 @@ def _series(run, name):
 
 
 def _strains(run, times):
-	"""Axial strains of shear at times, numbered from 0 where the records do not tell."""
+	"""Where frames are on the slider, by their times: axial strains of shear, numbered from 0 where the records do not tell; of a list of stages the times."""
 	shear = run.rows("shear")
+	if run.staged:
+		return np.array(times)
 	return np.interp(times, shear["time"], shear["axial_strain"]) if shear else np.arange(len(times), dtype=float)
 
 
@@ -190,6 +192,7 @@ def _planes(run):
 	bands = table(run, "bands.csv", ("verdict",))
 	if bands is None:
 		return []
-	names = ("axial_strain", "dip", "azimuth", "height", "thickness")
-	found = [[float(bands[name][k]) for name in names] for k, verdict in enumerate(bands["verdict"]) if verdict in ("band", "pair")]
-	return [dict(zip(("strain", *names[1:]), values)) for values in found if np.isfinite(values).all()]
+	names = ("dip", "azimuth", "height", "thickness")
+	at = run.at(bands["axial_strain"], bands["step"])
+	found = [[float(at[k]), *(float(bands[name][k]) for name in names)] for k, verdict in enumerate(bands["verdict"]) if verdict in ("band", "pair")]
+	return [dict(zip(("strain", *names), values)) for values in found if np.isfinite(values).all()]

@@ -233,9 +233,7 @@ def _stages(test, until, say):
 		picture = test.out / checkpoints.PICTURE
 		plot(test.records.path, picture, test.config.title)
 		say(f"wrote {test.records.path}, {picture}" + (f" and {test.frames.folder}" if test.frames.written else ""))
-		if test.config.output.report and test.config.stages is None:
+		if test.config.output.report:
 			_report(test.out, say)
-		elif test.config.output.report:
-			say(f"no {checkpoints.REPORT}: its page shows one consolidation and one shear, and this test has a list of stages")
 	say(f"done in {clock(test.elapsed())}")
 	return test

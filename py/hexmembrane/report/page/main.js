@@ -38,9 +38,9 @@
 	async function show(index) {
 		find("strain").value = index;
 		const strain = state.strains[index];
-		find("at").textContent = `${report.number(100 * strain, 3)} %`;
+		find("at").textContent = report.told(state.run, strain);
 		keep("strain", strain);
-		report.curves.mark(100 * strain);
+		report.curves.mark(report.marks(state.run, strain));
 		await Promise.all(state.parts.map((part) => part.show(strain)));
 	}
 
@@ -63,7 +63,9 @@
 		inside.className = both ? "specimen both" : "specimen";
 		inside.replaceChildren(left, right);
 		const all = [run.scene, run.clouds, run.profile].flatMap((part) => part?.strains ?? []);
-		state.strains = all.sort((a, b) => a - b).filter((one, k) => k === 0 || one - all[k - 1] > 1e-5);
+		find("over").textContent = run.stages ? "time" : "axial strain";
+		const same = run.stages ? 1e-6 * Math.max(...all) : 1e-5;
+		state.strains = all.sort((a, b) => a - b).filter((one, k) => k === 0 || one - all[k - 1] > same);
 		find("slide").hidden = find("play").hidden = state.strains.length < 2;
 		if (!state.strains.length) return;
 		find("strain").max = state.strains.length - 1;

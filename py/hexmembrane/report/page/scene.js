@@ -226,7 +226,7 @@
 		}
 
 		describe(grains, sheet) {
-			this.caption.textContent = `${this.run.title}: grains and lateral boundary at ${report.number(100 * this.data.strains[this.frame], 3)} %`;
+			this.caption.textContent = `${this.run.title}: grains and lateral boundary at ${report.told(this.run, this.data.strains[this.frame])}`;
 			const { options } = this,
 				named = (one) => one.label + (one.unit ? ` [${one.unit}]` : "");
 			this.shown = [
