@@ -104,6 +104,7 @@ TABLE = {
 	"shear.pressureTolerance": (At(SHEAR, lambda config: config.shear.stopOutsideTolerance),),
 	"shear.*": _ALWAYS[SHEAR],
 	"measure.*": _ALWAYS[SHEAR],
+	"lab.*": (),
 	"numerics.threads": (),
 	"numerics.verlet": (At(CONSOLIDATION, _reference),),
 	"numerics.skin": (At(CONSOLIDATION, _compact),),

@@ -19,7 +19,7 @@ def _arguments(argv):
 	parser = argparse.ArgumentParser(prog="scripts/report", description="One page of HTML from tests and studies, that opens from the disk without a network.")
 	parser.add_argument("folders", nargs="+", metavar="DIR", help="output folder of scripts/run or scripts/sweep")
 	parser.add_argument("--out", metavar="FILE", help=f"page to write (default: {_NAME} in the first DIR)")
-	parser.add_argument("--laboratory", action="append", default=[], metavar="CSV", help="curves to lay under: 'axial_strain [-]' and columns of records.csv")
+	parser.add_argument("--laboratory", action="append", default=[], metavar="CSV", help="a laboratory's curve to lay under: axial_strain [unit], stress_ratio or q [unit], volumetric_strain [unit]")
 	parser.add_argument("--text", action="store_true", help="print curves on the terminal and write no page")
 	parser.add_argument("--watch", type=float, nargs="?", const=_SECONDS, metavar="SECONDS", help="renew page and terminal until the tests are at their end")
 	given = parser.parse_args(argv)

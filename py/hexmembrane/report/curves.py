@@ -7,9 +7,7 @@ import pathlib
 
 import numpy as np
 
-from hexmembrane.output import tables
 from hexmembrane.report.encode import numbers
-from hexmembrane.report.runs import ReportError
 from hexmembrane.report.summary import halfWidth
 
 
@@ -122,18 +120,14 @@ def ofGroup(group):
 	return {"name": f"mean of {len(group)}: {group[0].title}", "members": [run.name for run in group], "shear": content}
 
 
-def laboratory(path):
-	"""A laboratory's curves: a CSV file with ``axial_strain [-]`` and columns of records.csv, in their units.
-
-	:raises ReportError: it is no such file.
-	"""
-	path = pathlib.Path(path)
-	try:
-		table = tables.read(path, needed=("axial_strain",))
-	except (OSError, ValueError) as error:
-		raise ReportError(f"--laboratory = '{path}': cannot be read ({error}); fix: a header such as 'axial_strain [-],q [Pa]', then rows of numbers") from None
-	values = {panel.name: panel.values(table) for panel in PANELS}
-	found = {name: numbers(one) for name, one in values.items() if one is not None}
-	if not found:
-		raise ReportError(f"--laboratory = '{path}': has no column that is drawn; fix: give one of {', '.join(panel.name for panel in PANELS)}")
-	return {"name": path.stem, "shear": {"x": numbers(100 * table["axial_strain"]), **found}}
+def laboratory(curve, pressure):
+	"""A :class:`hexmembrane.laboratory.curve.Curve` at sigma3 [Pa] for the page: q, q/p and volumetric strain where it has them."""
+	series = curve.series
+	strain = np.unique(np.concatenate([one.strain for one in series.values()]))
+	found = {"x": numbers(100 * strain)}
+	if "stress_ratio" in series:
+		ratio = series["stress_ratio"].at(strain)
+		found["q"], found["stress_ratio"] = numbers(1e-3 * pressure * (ratio - 1)), numbers(3 * (ratio - 1) / (ratio + 2))
+	if "volumetric_strain" in series:
+		found["volumetric_strain_volume"] = numbers(100 * series["volumetric_strain"].at(strain))
+	return {"name": f"{curve.name} at {1e-3 * pressure:g} kPa", "shear": found}

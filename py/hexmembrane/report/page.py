@@ -12,7 +12,7 @@ import math
 import pathlib
 
 import hexmembrane
-from hexmembrane.report import curves, libraries, profiles, runs, sections, spatial, verdict
+from hexmembrane.report import curves, laboratories, libraries, profiles, runs, sections, spatial, verdict
 from hexmembrane.report.encode import numbers, script
 from hexmembrane.report.summary import halfWidth, quantities
 
@@ -34,7 +34,7 @@ def _rowsOfStages(run):
 	return {"time": numbers(run.table["time"]), "strain": numbers(run.table["axial_strain"]), "stage": [str(name) for name in run.table["stage"]]}
 
 
-def _content(run, group, every):
+def _content(run, group, every, labs):
 	"""All that the page tells of a test. What reads files comes first: it adds to the run's problems."""
 	scene = spatial.scene(run, every)
 	profile = profiles.measured(run) or (scene or {}).pop("profile", None)
@@ -51,6 +51,7 @@ def _content(run, group, every):
 		"profile": profile,
 		"summary": verdict.summary(run),
 		"verdict": [vars(check) for check in verdict.checks(run, _scatter(group) if group else None)],
+		"apart": laboratories.apart(run, labs),
 		"configuration": run.text,
 		"made": {str(name): str(value) for name, value in run.made.items() if name != "budget"},
 		"digests": runs.digests(run),
@@ -58,14 +59,15 @@ def _content(run, group, every):
 	}
 
 
-def gather(folders, laboratories=(), watch=None):
+def gather(folders, curvesOfLaboratories=(), watch=None):
 	"""The content of a page.
 
-	:param folders: of tests and studies. :param laboratories: CSV files, see :func:`hexmembrane.report.curves.laboratory`.
+	:param folders: of tests and studies. :param curvesOfLaboratories: CSV files, see :mod:`hexmembrane.report.laboratories`.
 	:param watch: seconds after which the page loads itself anew, None: never.
 	:raises ReportError: a folder or file is none of these.
 	"""
 	found = runs.gather(folders)
+	labs = laboratories.gather(found, curvesOfLaboratories)
 	groups = curves.groups(found)
 	groupOf = {run.name: group for group in groups for run in group}
 	every = max(1, math.ceil(sum(map(spatial.bytesOf, found)) / spatial.MOST_BYTES))
@@ -76,10 +78,10 @@ def gather(folders, laboratories=(), watch=None):
 		"watch": watch,
 		"panels": [{"name": panel.name, "title": panel.title, "unit": panel.unit, "log": panel.log} for panel in curves.PANELS],
 		"axes": curves.axes(),
-		"runs": [_content(run, groupOf.get(run.name), every) for run in found],
+		"runs": [_content(run, groupOf.get(run.name), every, labs) for run in found],
 		"groups": [curves.ofGroup(group) for group in groups],
 		"differences": runs.differences(found),
-		"laboratories": [curves.laboratory(path) for path in laboratories],
+		"laboratories": laboratories.drawn(labs),
 	}
 
 

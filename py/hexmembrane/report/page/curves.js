@@ -96,7 +96,7 @@
 
 	function domain() {
 		const ends = series.filter((one) => one.shown && one.stages[state.stage]).map((one) => one.stages[state.stage].x);
-		return [d3.min(ends, d3.min) ?? 0, d3.max(ends, d3.max) || 1];
+		return [d3.min(ends, (x) => d3.min(x)) ?? 0, d3.max(ends, (x) => d3.max(x)) || 1];
 	}
 
 	function make(panel, parent) {
