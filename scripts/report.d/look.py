@@ -25,7 +25,9 @@ _UNNAMED = """[...document.querySelectorAll("button, input, select, [role=img], 
 	.map((one) => one.outerHTML.slice(0, 80))"""
 #: Grains of a scene, and pictures a second while it is turned: as fine as the screen, and at half of that.
 _SPEED = """(async () => {
-	const scene = report.state.parts[0], fine = await scene.measure(30);
+	const scene = report.state.parts[0];
+	scene.setRatio(1);
+	const fine = await scene.measure(30);
 	scene.setRatio(0.5);
 	return [scene.radii.length, fine, await scene.measure(30)];
 })()"""

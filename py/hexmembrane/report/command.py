@@ -28,6 +28,17 @@ def _arguments(argv):
 	return given
 
 
+def _wait(folders, seconds):
+	"""Until there is something in each folder: a test makes its own a while after it was begun."""
+	for folder in map(pathlib.Path, folders):
+		told = False
+		while not (folder.is_dir() and any(folder.iterdir())):
+			if not told:
+				print(f"waiting for a test in {folder}", flush=True)
+			told = True
+			time.sleep(seconds)
+
+
 def _seen(folders):
 	"""What changes when a test goes on."""
 	found = []
@@ -57,6 +68,8 @@ def main(argv):
 	given = _arguments(argv)
 	out = pathlib.Path(given.out or pathlib.Path(given.folders[0]) / _NAME)
 	try:
+		if given.watch is not None:
+			_wait(given.folders, given.watch)
 		before, ended = None, False
 		while not ended:
 			seen = _seen([run.folder for run in runs.gather(given.folders)])

@@ -318,14 +318,16 @@
 	}
 
 	report.curves = {
-		// Build all into the section; nothing without rows.
-		show(section) {
+		// Build all into the section; nothing without rows. before: what view() gave.
+		show(section, before) {
 			const stages = Object.keys(content.axes).filter((stage) => series.some((one) => one.stages[stage]));
 			if (!stages.length) {
 				section.append(report.element("p", {}, "No row has been written yet: there are no curves."));
 				return;
 			}
-			state.stage = ["stages", "shear"].find((one) => stages.includes(one)) ?? stages[0];
+			state.stage = [before?.stage, "stages", "shear"].find((one) => stages.includes(one)) ?? stages[0];
+			if (before && state.stage === before.stage) state.domain = before.domain;
+			if (before) series.forEach((one) => (one.shown = !before.hidden.includes(one.name)));
 			const { element } = report;
 			if (series.length > 1) {
 				const all = element(
@@ -395,5 +397,7 @@
 			panels.forEach((panel) => panel.drawCursor());
 		},
 		redraw,
+		// What the reader has chosen, for a page that is loaded anew.
+		view: () => ({ stage: state.stage, domain: state.domain, hidden: series.filter((one) => !one.shown).map((one) => one.name) }),
 	};
 }

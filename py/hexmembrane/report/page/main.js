@@ -44,7 +44,7 @@
 		await Promise.all(state.parts.map((part) => part.show(strain)));
 	}
 
-	async function pick(run) {
+	async function pick(run, before) {
 		state.run = run;
 		keep("run", run.name);
 		report.verdict(verdict, run);
@@ -54,7 +54,7 @@
 			left = element("div"),
 			right = element("div");
 		state.parts = [
-			...(run.scene ? [new report.Scene(left, run)] : []),
+			...(run.scene ? [new report.Scene(left, run, before)] : []),
 			...(run.clouds ? [new report.Clouds(right, run)] : []),
 			...(run.profile ? [new report.Profile(right, run)] : []),
 		];
@@ -90,7 +90,8 @@
 	theme();
 	report.problems();
 	report.overview(find("verdict"));
-	report.curves.show(find("curves"));
+	const before = report.before();
+	report.curves.show(find("curves"), before?.curves);
 	const [verdict, inside, origin] = ["verdict", "inside", "origin"].map((id) => {
 		const made = element("div");
 		find(id).append(made);
@@ -110,6 +111,7 @@
 	);
 	find("run").value = first;
 	report.state = state;
-	report.ready = pick(content.runs[first]);
-	if (content.watch) setTimeout(() => location.reload(), 1000 * content.watch);
+	report.ready = pick(content.runs[first], before?.scene);
+	if (content.watch) report.renew(() => ({ curves: report.curves.view(), scene: state.parts[0]?.view?.() ?? null }));
+	if (before) report.ready.then(() => scrollTo(0, before.scroll));
 }

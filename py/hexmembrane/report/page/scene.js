@@ -10,7 +10,8 @@
 	const WANTED = { grains: "", boundary: "", sheet: "back", cut: false, depth: 0, azimuth: 0, bands: true, chains: false, share: 20 };
 
 	class Scene {
-		constructor(parent, run) {
+		// before: what view() gave.
+		constructor(parent, run, before) {
 			Object.assign(this, { run, data: run.scene, frame: 0, options: { ...WANTED }, ratio: 1, moved: 0 });
 			const { data } = this;
 			this.options.grains = (data.grains.quantities.find((one) => one.name === "shear") ?? data.grains.quantities[0])?.name ?? "";
@@ -20,6 +21,8 @@
 				csv: () => this.csv(),
 			});
 			this.figure = figure;
+			Object.assign(this.options, before?.options);
+			this.before = before;
 			this.caption = caption;
 			figure.append(report.tools(data, this.options, { fill: () => this.fill(), look: (direction) => this.look(direction) }));
 			this.stage = element("div", {
@@ -95,6 +98,11 @@
 			this.centre = box.getCenter(new THREE.Vector3());
 			this.size = box.getSize(new THREE.Vector3());
 			this.look([0.45, -1, 0.28]);
+			if (this.before) {
+				this.camera.position.fromArray(this.before.camera);
+				this.controls.target.fromArray(this.before.target);
+				this.controls.update();
+			}
 			await this.fill();
 		}
 
@@ -108,6 +116,12 @@
 			this.controls.target.copy(this.centre);
 			this.controls.update();
 			this.draw();
+		}
+
+		// What the reader has chosen, for a page that is loaded anew; nothing before it is drawn.
+		view() {
+			if (!this.centre) return null;
+			return { options: this.options, camera: this.camera.position.toArray(), target: this.controls.target.toArray() };
 		}
 
 		key(event) {
