@@ -182,6 +182,7 @@ def test_freeKeys():
 		"output.checkpointEvery",
 		"output.contacts",
 		"output.report",
+		*(f"lab.{name}" for name in ("file", "strain", "stress_ratio", "q", "volumetric_strain", "volumetric", "units")),
 	}
 
 

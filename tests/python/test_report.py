@@ -332,11 +332,16 @@ def test_aStudyIsOpenedByItsPlan(tmp_path):
 
 def test_aTestEndsWithItsReport(tmp_path, runHere, monkeypatch):
 	"""And goes well without the page's libraries; resumed at its end with them it writes the page."""
-	config, out = configure(tmp_path, shear={"strain": 0.002}, output={"records": 4, "report": True}), tmp_path / "out"
+	config, out, lab = configure(tmp_path, shear={"strain": 0.002}, output={"records": 4, "report": True}), tmp_path / "out", tmp_path / "sand test.csv"
+	lab.write_text("axial_strain [%],q [kPa]\n0,0\n0.1,50\n0.5,80\n1,100\n2,90\n")
 	with monkeypatch.context() as without:
 		without.setattr(libraries, "FOLDERS", (tmp_path,))
-		code, said, _ = runHere(config, "--out", out)
+		code, said, _ = runHere(config, "--out", out, "--lab", lab)
+	assert "laboratory sand test: peak of sigma1/sigma3 " in said
 	assert code == 0 and not (out / "report.html").exists() and "no report.html: report.node-d3" in said
 	code, said, _ = runHere(config, "--out", out, "--resume")
 	assert code == 0 and (out / "report.html").is_file() and "report.html" in said and not (out / "report.html.part").exists()
 	assert page.gather([out])["runs"][0]["problems"] == []
+	lab.write_text("axial_strain [%],q [kPa]\n0,0\n")
+	code, _, errors = runHere(config, "--out", tmp_path / "other", "--lab", lab)
+	assert code == 2 and "error: lab.q = " in errors and "is too short: it has 1 values; fix: " in errors and not (tmp_path / "other").exists()
