@@ -104,6 +104,7 @@ TABLE = {
 	"shear.pressureTolerance": (At(SHEAR, lambda config: config.shear.stopOutsideTolerance),),
 	"shear.*": _ALWAYS[SHEAR],
 	"measure.*": _ALWAYS[SHEAR],
+	"lab.*": (),
 	"numerics.threads": (),
 	"numerics.verlet": (At(CONSOLIDATION, _reference),),
 	"numerics.skin": (At(CONSOLIDATION, _compact),),
@@ -111,6 +112,7 @@ TABLE = {
 	"numerics.*": _ALWAYS[CONSOLIDATION],
 	"output.records": _ALWAYS[SHEAR],
 	"output.vtkEvery": (),
+	"output.contacts": (),
 	"output.report": (),
 	"output.checkpointEvery": (At(CONSOLIDATION, _reference),),  # there a test goes on from what it has saved
 	"output.*": _ALWAYS[CONSOLIDATION],

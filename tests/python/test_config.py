@@ -180,7 +180,9 @@ def test_freeKeys():
 		"numerics.threads",
 		"output.vtkEvery",
 		"output.checkpointEvery",
+		"output.contacts",
 		"output.report",
+		*(f"lab.{name}" for name in ("file", "strain", "stress_ratio", "q", "volumetric_strain", "volumetric", "units")),
 	}
 
 

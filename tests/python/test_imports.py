@@ -11,6 +11,7 @@ PACKAGE = pathlib.Path(__file__).parents[2] / "py" / "hexmembrane"
 ORDER = ("configuration", "scene", "measure", "output", "laboratory", "report", "run")
 WITHOUT_YADE = (
 	"configuration.json_schema",
+	"configuration.lab",
 	"configuration.pfc",
 	"configuration.specimen",
 	"configuration.stages",
@@ -38,9 +39,11 @@ WITHOUT_YADE = (
 	"output.plots",
 	"laboratory.curve",
 	"laboratory.misfit",
+	"report.chains",
 	"report.command",
 	"report.curves",
 	"report.encode",
+	"report.laboratories",
 	"report.libraries",
 	"report.page",
 	"report.profiles",

@@ -24,8 +24,10 @@ SECONDS = {"compact": 1.1e-3 / 19429, "reference": 29 * 1.1e-3 / 19429}
 PROGRAM, SPHERE = 400e6, 6e3
 #: Disk [bytes] a sphere: a kept state, a last checkpoint, a VTK frame; bytes of a row. Measured with 3,416 spheres.
 STATE, CHECKPOINT, FRAME, ROW = 220, 1000, 120, 1000
-#: Disk [bytes] of a report's page, and of a sphere in one of its frames. Measured with 3,416 and 19,429 spheres.
-PAGE, PAGE_FRAME = 1.3e6, 25
+#: Disk [bytes] a sphere of a frame's contacts. Measured with 19,429 spheres and 20,312 contacts.
+CONTACTS = 51
+#: Disk [bytes] of a report's page, and of a sphere in one of its frames, without and of contacts. Measured with 3,416 and 19,429 spheres.
+PAGE, PAGE_FRAME, PAGE_CONTACTS = 1.3e6, 25, 10
 #: Largest number of steps of the pressure's rise, and of the shear: at 20 us a step, that of a few hundred spheres, they take six hours.
 MOST_STEPS = 10**9
 #: Largest number of threads a processor: more of them only wait for each other.
@@ -113,6 +115,7 @@ class Estimate:
 		sheared = _seconds(config, radii, stages) / step
 		spheres = len(radii) + particles
 		frames = sum(stage.records for stage in stages) / config.output.vtkEvery + 2 * (len(stages) - 1) if config.output.vtkEvery else 0
+		frame, pageFrame = FRAME + CONTACTS * config.output.contacts, PAGE_FRAME + PAGE_CONTACTS * config.output.contacts
 		rows = sum(stage.records for stage in stages) + consolidation / config.output.consolidationSteps
 		return cls(
 			grains=len(radii),
@@ -123,7 +126,7 @@ class Estimate:
 			shear=sheared,
 			seconds=(consolidation + sheared) * spheres * SECONDS[config.tier],
 			memory=PROGRAM + SPHERE * spheres,
-			disk=spheres * (3 * STATE + 3 * CHECKPOINT + FRAME * frames) + ROW * rows + (PAGE + PAGE_FRAME * spheres * frames) * config.output.report,
+			disk=spheres * (3 * STATE + 3 * CHECKPOINT + frame * frames) + ROW * rows + (PAGE + pageFrame * spheres * frames) * config.output.report,
 		)
 
 	def line(self):

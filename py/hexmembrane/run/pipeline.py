@@ -11,6 +11,8 @@ from hexmembrane import configuration
 from hexmembrane.configuration import Config, ConfigError, toDict
 from hexmembrane.configuration.schema import freeKeys
 from hexmembrane.configuration.stages import plan
+from hexmembrane.laboratory import curve, misfit
+from hexmembrane.output import records
 from hexmembrane.output.plots import plot
 from hexmembrane.run import checkpoints, estimate, from_state, progress, stages, states, straining
 from hexmembrane.run.checkpoints import FolderError, Store
@@ -51,7 +53,8 @@ def _sameTest(config, store):
 	store.require("config.yaml")
 	path = store.folder / "config.yaml"
 	before = configuration.load(path)
-	odd = [name for name in checkpoints.differences(toDict(before), toDict(config)) if name not in freeKeys(Config)]
+	free = freeKeys(Config)
+	odd = [name for name in checkpoints.differences(toDict(before), toDict(config)) if not any(f"{name}.".startswith(f"{key}.") for key in free)]
 	if odd:
 		raise CheckpointError(
 			f"checkpoint = '{store.folder}': was made with other values of {', '.join(odd)}; fix: resume with the configuration "
@@ -90,6 +93,7 @@ def _wantOwnSettings(config):
 def prepare(config, out, say):
 	"""Choose what ``accuracy`` leaves open, say what the test needs, refuse what cannot be; the error budget of the settings."""
 	estimate.requireThreads(config)
+	curve.ofKeys(toDict(config.lab), config.consolidation.pressure)  # a wrong one is told before the test
 	estimate.requireTravel(config)
 	radii = specimen.plannedRadii(config)
 	if config.accuracy is not None:
@@ -231,11 +235,14 @@ def _stages(test, until, say):
 	test.proceed(until)
 	if until is None or test.plan[[planned.label for planned in test.plan].index(until)].chain:
 		picture = test.out / checkpoints.PICTURE
-		plot(test.records.path, picture, test.config.title)
+		pressure = test.config.consolidation.pressure
+		laboratory = curve.ofKeys(toDict(test.config.lab), pressure)
+		found = misfit.ofRecords(laboratory, records.read(test.records.path), pressure) if laboratory else []
+		plot(test.records.path, picture, test.config.title, laboratory, pressure, found)
+		for line in [*laboratory.warnings, *(f"laboratory {laboratory.name}: {one}" for one in found)] if laboratory else ():
+			say(line)
 		say(f"wrote {test.records.path}, {picture}" + (f" and {test.frames.folder}" if test.frames.written else ""))
-		if test.config.output.report and test.config.stages is None:
+		if test.config.output.report:
 			_report(test.out, say)
-		elif test.config.output.report:
-			say(f"no {checkpoints.REPORT}: its page shows one consolidation and one shear, and this test has a list of stages")
 	say(f"done in {clock(test.elapsed())}")
 	return test

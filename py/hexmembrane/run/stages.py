@@ -51,7 +51,7 @@ class TriaxialTest:
 		self.stage, self.rowCount, self.lastRow, self._earlier = "generated", 0, None, 0.0
 		if resumed is None:
 			self.stageStart, self.reference = {"step": O.iter, "time": O.time, "strain": 0.0}, rows.Reference.of(self.scene)
-			self.frames, self.records = Frames(self.out), Records(self.out / RECORDS)
+			self.frames, self.records = Frames(self.out, config.output.contacts), Records(self.out / RECORDS)
 			self.inside = Inside(config, self.out)
 		else:
 			self._goOnFrom(resumed)
@@ -62,7 +62,7 @@ class TriaxialTest:
 		self.stage, self.rowCount, self.lastRow, self._earlier = checkpoint.stage, resumed.rows, resumed.last, checkpoint.elapsed
 		self.stageStart, self.reference = checkpoint.begun, rows.Reference(**checkpoint.reference)
 		self._earlierRows = self._countEarlier(resumed.count)
-		self.frames, self.records = Frames(self.out, checkpoint.frames), Records(self.out / RECORDS, checkpoint.records.size)
+		self.frames, self.records = Frames(self.out, self.config.output.contacts, checkpoint.frames), Records(self.out / RECORDS, checkpoint.records.size)
 		self.inside = Inside(self.config, self.out, checkpoint.inside)
 		self.scene.tellCheckpoint(self.out / checkpoint.state)
 
