@@ -34,7 +34,8 @@ class Consolidation(Stage):
 		test.scene.lateralBoundary.setMaxVelocity(self.config.wall.maxVelocity or speed * test.reference.radius)
 		grains, platens = self.config.specimen.friction, self.config.platens.friction
 		own, smoother = self.config.consolidation.friction, self.config.platens.consolidationFriction
-		test.scene.setFriction(grains if own is None else own, platens if smoother is None else smoother)
+		pairs = self.config.contacts.frictions(platens=smoother)
+		test.scene.setFriction(grains if own is None else own, platens if smoother is None else smoother, pairs)
 		test.enter(self.planned.label)
 		test.checkpoint()
 

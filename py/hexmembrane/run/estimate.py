@@ -262,12 +262,12 @@ def _step(config, radii, particleRadius):
 	numerics, keys, specimen = config.numerics, config.membrane, config.specimen
 	if numerics.dt is not None:
 		return numerics.dt
-	grains = timestep.grainStep(specimen, radii)
+	grains = timestep.grainsStep(config, radii)
 	if particleRadius is None:
 		return numerics.safety * grains
 	mass = timestep.sphereMass(particleRadius, keys.density)
 	bonds = 2 * math.sqrt(mass / (6 * keys.young * keys.thickness / (math.sqrt(3) * (1 - keys.poisson))))
-	membrane = timestep.membraneStep(specimen.springs, config.springs("membrane"), keys.density, float(radii.max()), particleRadius, bonds)
+	membrane = timestep.membraneStep(specimen.springs, config.springs("membrane"), keys.density, float(radii.max()), particleRadius, bonds, config.contacts.grainMembrane)
 	return numerics.safety * min(grains, math.sqrt(timestep.densityScaling(keys.densityScaling, grains, membrane)) * membrane)
 
 

@@ -11,8 +11,10 @@ import numpy
 import yade
 from yade import BodyArrays, O
 
-from hexmembrane.configuration import ConfigError, toDict
+from hexmembrane.configuration import ConfigError
+from hexmembrane.configuration.contacts import PAIRS
 from hexmembrane.configuration.reader import read
+from hexmembrane.configuration.schema import sections
 from hexmembrane.configuration.specimen import PATHS, SOURCES
 from hexmembrane.configuration.stages import plan
 from hexmembrane.run import manifest
@@ -21,7 +23,7 @@ from hexmembrane.scene.handles import Scene, compactLoop
 
 #: Sections and keys that act from the state on, or only say how a result is shown; files are known by the grains that they give.
 _APPLIED_SECTIONS = ("shear", "measure", "output", "numerics")
-_APPLIED = ("title", "tier", "accuracy", "stages", "specimen.friction", "platens.friction", *(f"specimen.{name}" for name in PATHS))
+_APPLIED = ("title", "tier", "accuracy", "stages", "specimen.friction", "platens.friction", *(f"contacts.{name}.friction" for name in PAIRS), *(f"specimen.{name}" for name in PATHS))
 #: Keys that say how a packing is made.
 _MAKING = ("scale", "cutBelow", "cutAbove", "grains", "porosity", "seed", "stress", "packingRollingFriction", "ballsUnit", *SOURCES)
 #: Relative difference of what counts as the same number, and of the same radius in a file.
@@ -41,23 +43,31 @@ def adopt(config, path, say):
 		say("WARNING: no config.yaml of its test lies beside the state: stiffness, density, sheet, servos and sizes are compared, other keys cannot be")
 		return None
 	own, taken = read(beside), []
-	for section, keys in toDict(config).items():
-		values = own.get(section)
-		if not isinstance(keys, dict) or not isinstance(values, dict) or section in _APPLIED_SECTIONS or _isOther(section, config):
+	for section, keys, values in _sections(config, own):
+		if section in _APPLIED_SECTIONS or _isOther(section, config):
 			continue
-		for name, value in keys.items():
+		for name, value in vars(keys).items():
 			key = f"{section}.{name}"
-			if key in _APPLIED or name not in values or value == values[name] or (section, name) == ("consolidation", "pressure"):
+			if key in _APPLIED or name not in values or isinstance(values[name], dict) or value == values[name] or (section, name) == ("consolidation", "pressure"):
 				continue
 			if section == "specimen" and name in _MAKING and not (config.specimen.made and values.get("packing") is None and values.get("balls") is None):
 				continue
 			if key in config.given:
 				raise ConfigError(key, value, f"the state was made with {values[name]!r}", "give that value, leave the key out, or make a specimen anew without --from")
-			setattr(getattr(config, section), name, values[name])
+			setattr(keys, name, values[name])
 			taken.append(f"{key} = {values[name]}")
 	if taken:
 		say("taken from the state's own configuration: " + ", ".join(taken))
 	return own
+
+
+def _sections(section, own, path=""):
+	"""(path, section, its values in the state's configuration) of the sections in a configuration or one of them, at any depth."""
+	for field in sections(type(section)):
+		inner, values = getattr(section, field.name), own.get(field.name)
+		if isinstance(values, dict):
+			yield path + field.name, inner, values
+			yield from _sections(inner, values, f"{path}{field.name}.")
 
 
 def _isOther(section, config):
@@ -86,12 +96,25 @@ def require(config, path):
 	for key, wants, has in _facts(config, boundary):
 		if wants is not None and not (wants == has or not isinstance(wants, (bool, str)) and abs(has - wants) <= _SAME * abs(wants)):
 			raise ConfigError(key, wants, f"the state has {has!r}", "give that value, or make a specimen anew without --from")
+	_requirePairs(config)
 	planned = numpy.sort(specimen.plannedRadii(config))
 	if len(planned) != len(radii) or abs(numpy.sort(radii) / planned - 1).max() > _SAME_SIZE:
 		name = next(name for name in SOURCES if getattr(config.specimen, name) is not None)
 		has = f"the state has {len(radii)} grains of {1e3 * radii.min():.4g} to {1e3 * radii.max():.4g} mm, this gives {len(planned)} of {1e3 * planned[0]:.4g} to {1e3 * planned[-1]:.4g} mm"
 		raise ConfigError(f"specimen.{name}", getattr(config.specimen, name), has, "give the state's specimen: specimen.packing: packing.txt of its folder")
 	_requireTravel(config, scene)
+
+
+def _requirePairs(config):
+	"""Check what contacts of pairs of groups have of their own against the state's materials; frictions are applied. What no file told is taken over."""
+	for name, (one, other) in PAIRS.items():
+		pair, has = getattr(config.contacts, name), O.materials[one].pairs().get(other, {})
+		for key in (key for key in vars(pair) if key != "friction"):
+			wants, value = getattr(pair, key), has.get(key)
+			path = f"contacts.{name}.{key}"
+			if path in config.given and wants != value:
+				raise ConfigError(path, wants, f"the state has {value!r}", "give that value, leave the key out, or make a specimen anew without --from")
+			setattr(pair, key, value)
 
 
 def _facts(config, boundary):

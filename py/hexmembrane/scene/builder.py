@@ -25,6 +25,9 @@ def _materials(config):
 		yade.LinearMat(friction=grain.friction, rollingFriction=grain.rollingFriction, density=grain.density, label="grain", **grain.springs.given())
 	)
 	O.materials.append(yade.LinearMat(friction=platens.friction, density=grain.density, label="platen", **config.springs("platens").given()))
+	for (one, other), pair in config.contacts.pairs().items():
+		if pair.given():
+			O.materials[one].setPair(other, **pair.given())
 
 
 def _raiseMasses(config, ids, radii, say):
@@ -126,7 +129,7 @@ def build(config, packing, say=print):
 	O.engines = _engines(config, [*servos, *before, *drives, *after], min(smallest, parts.smallestRadius))
 	O.trackEnergy = config.output.energy
 	scene = Scene()
-	_setTimeStep(config, timestep.grainStep(config.specimen, packing.radii), parts, say)
+	_setTimeStep(config, timestep.grainsStep(config, packing.radii), parts, say)
 	for line in parts.log:
 		say(line)
 	level = timestep.levelOf(config.specimen.springs, packing.radii, config.consolidation.pressure)

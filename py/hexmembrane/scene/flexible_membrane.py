@@ -104,9 +104,13 @@ def sheetEngines(keys, membrane, bending):
 	return sheet
 
 
-def facetEngines(keys, membrane, bonds):
-	"""The engine that keeps grains from pressing themselves through a stretched mesh, as configured: a list of one or none."""
-	return [yade.MembraneFacetContact(membrane=membrane, bonds=bonds)] if keys.facets else []
+def facetEngines(keys, membrane, bonds, own):
+	"""The engine that keeps grains from pressing themselves through a stretched mesh, as configured: a list of one or none.
+
+	:param own: what contacts of grains and membrane have of their own, a :class:`hexmembrane.configuration.contacts.PairContact`.
+	"""
+	stiffness = {"kn": own.normal(membrane.sphereRadius / 2)} if own.stiff else {}
+	return [yade.MembraneFacetContact(membrane=membrane, bonds=bonds, **stiffness)] if keys.facets else []
 
 
 def sheetStep(sheet):
@@ -143,7 +147,7 @@ class FlexibleMembrane(LateralBoundary):
 		bending = bendingStiffness(config, packing.radii)
 		sheet = sheetEngines(keys, membrane, bending)
 		springs = config.specimen.springs, config.springs("membrane")
-		unscaled = timestep.membraneStep(*springs, keys.density, largest, membrane.sphereRadius, sheetStep(sheet))
+		unscaled = timestep.membraneStep(*springs, keys.density, largest, membrane.sphereRadius, sheetStep(sheet), config.contacts.grainMembrane)
 		scaling = timestep.densityScaling(keys.densityScaling, timestep.grainStep(config.specimen, packing.radii), unscaled)
 		scaleDensity(membrane, scaling)
 
@@ -154,7 +158,7 @@ class FlexibleMembrane(LateralBoundary):
 		def engines(bottom, top):
 			before = [
 				*sheet,
-				*facetEngines(keys, membrane, sheet[0]),
+				*facetEngines(keys, membrane, sheet[0], config.contacts.grainMembrane),
 				yade.MembranePressure(membrane=membrane, pressure=0.0, surface=keys.surface, timeConstant=pressureTime, maxFactor=keys.maxFactor),
 			]
 			if 2 in membrane.groups:

@@ -79,12 +79,18 @@ class Scene:
 		self.lateralBoundary.addFrequencySquare(square)
 		return timestep.contactStep(*_springs(), *_masses(), square)
 
-	def setFriction(self, grains, platens):
-		"""Give the grains and the platens, and the contacts that they have, coefficients of friction; the lesser of two materials acts."""
+	def setFriction(self, grains, platens, pairs=None):
+		"""Give the grains and the platens, and the contacts that they have, coefficients of friction; the lesser of two materials acts.
+
+		:param pairs: {(label, label): the friction of this pair's contacts instead, None: the lesser}; None: pairs stay as they are.
+		"""
 		O.materials["grain"].friction = grains
 		O.materials["platen"].friction = platens
+		for (one, other), friction in (pairs or {}).items():
+			_setPairFriction(one, other, friction)
 		for contact in O.interactions:
-			contact.phys.tangensOfFrictionAngle = min(O.bodies[i].material.friction for i in (contact.id1, contact.id2))
+			one, other = (O.bodies[i].material for i in (contact.id1, contact.id2))
+			contact.phys.tangensOfFrictionAngle = one.pairFriction(other)
 
 	def setPressure(self, pressure):
 		"""Give the lateral boundary and the top platen the confining pressure [Pa]."""
@@ -133,6 +139,19 @@ class Scene:
 		limit = math.nan if limit is None else limit
 		(self.axialServo or self.topDrive).timeLimit = limit
 		self.lateralBoundary.setTimeLimit(limit)
+
+
+def _setPairFriction(owner, partner, friction):
+	"""Give contacts of two materials, by their labels, a friction of their own, None: none."""
+	material = O.materials[owner]
+	before = material.pairs().get(partner, {})
+	own = {name: value for name, value in before.items() if name != "friction"}
+	if friction is not None:
+		own["friction"] = friction
+	if own:
+		material.setPair(partner, **own)
+	elif before:
+		material.removePair(partner)
 
 
 def compactLoop():
