@@ -93,7 +93,7 @@ class Consolidation(Stage):
 		return errors
 
 	def _tolerance(self):
-		return restTolerance(self.config.consolidation.tolerance, self.config.boundary, self.config.membrane.pressureTime)
+		return restTolerance(self.config.consolidation.tolerance, self.test.scene.lateralBoundary.name, self.config.membrane.pressureTime)
 
 	def _atRest(self, rampTime):
 		row = self.test.lastRow

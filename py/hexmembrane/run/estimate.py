@@ -14,7 +14,7 @@ import shutil
 import numpy
 
 from hexmembrane.configuration import ConfigError
-from hexmembrane.configuration.stages import CONSOLIDATION, plan
+from hexmembrane.configuration.stages import CONSOLIDATION, MEMBRANE, boundaries, plan
 from hexmembrane.run.progress import clock
 from hexmembrane.scene import timestep
 
@@ -248,7 +248,7 @@ def _seconds(config, radii, stages):
 
 def _membrane(config, smallest):
 	"""(number, radius [m]) of the membrane's spheres, nearly; (0, None) with a rigid wall."""
-	if config.boundary != "membrane":
+	if "membrane" not in boundaries(config):
 		return 0, None
 	keys, specimen = config.membrane, config.specimen
 	radius = keys.particleRadius or keys.sizeRatio * smallest
