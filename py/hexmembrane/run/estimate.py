@@ -107,7 +107,7 @@ class Estimate:
 		particles, particleRadius = _membrane(config, float(radii.min()))
 		step = _step(config, radii, particleRadius)
 		stages = plan(config)
-		rises = [_changeTime(config, radii, stage) / step for stage in stages if stage.kind == CONSOLIDATION]
+		rises = [_changeTime(config, radii, stage) / step for stage in stages if stage.kind in (CONSOLIDATION, MEMBRANE)]
 		rise = max(rises)
 		consolidation = sum(min(2.5 * steps + config.output.consolidationSteps, config.consolidation.maxSteps) for steps in rises)
 		sheared = _seconds(config, radii, stages) / step
@@ -235,7 +235,7 @@ def _seconds(config, radii, stages):
 	"""Time in the test [s] of the stages that are no consolidation, nearly."""
 	total, at = 0.0, 0.0
 	for stage in stages:
-		if stage.kind == CONSOLIDATION:
+		if stage.kind in (CONSOLIDATION, MEMBRANE):
 			at = 0.0
 		elif not stage.straining:
 			total += _changeTime(config, radii, stage)

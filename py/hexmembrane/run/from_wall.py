@@ -5,7 +5,7 @@ import math
 
 from yade import O
 
-from hexmembrane.run.consolidation import Consolidation
+from hexmembrane.run.consolidation import FIRST, Consolidation
 from hexmembrane.run.progress import Progress
 from hexmembrane.run.stage import RAMP_PARTS, StageError
 from hexmembrane.scene import exchange
@@ -44,8 +44,11 @@ class FromWall(Consolidation):
 		except ValueError as error:
 			raise StageError(f"{self.planned.path}: {error}; the state in the wall is in '{test.out}'") from None
 		test.scene = Scene()
+		test.scene.holdRadialLoad()
 		steps = self._press(progress)
 		held.release(test.scene)
+		if test.scene.radialServo:
+			test.scene.radialServo.dead = False
 		test.scene.setPressure(self.planned.pressure)
 		test.enter(self.planned.label)
 		test.advance(1)
@@ -69,7 +72,7 @@ class FromWall(Consolidation):
 		boundary, begun, first, most = test.scene.lateralBoundary, O.time, O.iter, self.config.consolidation.maxSteps
 		while True:
 			share = min(1.0, (O.time - begun) / time)
-			boundary.setPressure(pressure * (1 - math.cos(math.pi * share)) / 2)
+			boundary.setPressure(pressure * max(FIRST, (1 - math.cos(math.pi * share)) / 2))
 			test.advance(max(1, math.ceil(time / (RAMP_PARTS * O.dt))))
 			arrived = boundary.transmittedPressures()[3] / pressure
 			progress.update(min(0.99, share), transmitted=f"{100 * arrived:.1f} %")
