@@ -161,7 +161,10 @@ def compactLoop():
 
 def _springs():
 	"""The contacts in ``O`` as :func:`hexmembrane.scene.timestep.contactStep` takes them: pairs, normals, stiffness, arms."""
-	radii = [b.shape.radius if isinstance(b.shape, yade.Sphere) else 0.0 for b in O.bodies]
+	radii = numpy.zeros(len(O.bodies))
+	for body in O.bodies:
+		if isinstance(body.shape, yade.Sphere):
+			radii[body.id] = body.shape.radius
 	pairs, normals, stiffness = [], [], []
 	for contact in O.interactions:
 		phys = contact.phys
@@ -170,14 +173,16 @@ def _springs():
 		normals.append(tuple(contact.geom.normal))
 		stiffness.append((phys.kn, shear, phys.kr))
 	pairs = numpy.array(pairs, dtype=int).reshape(-1, 2)
-	return pairs, numpy.array(normals).reshape(-1, 3), numpy.array(stiffness).reshape(-1, 3), numpy.array(radii)[pairs]
+	return pairs, numpy.array(normals).reshape(-1, 3), numpy.array(stiffness).reshape(-1, 3), radii[pairs]
 
 
 def _masses():
-	"""Mass and moment of inertia of each body, inf for what does not move or turn."""
-	mass, inertia = [], []
+	"""Mass and moment of inertia of each body, inf for what does not move or turn, or is gone."""
+	mass, inertia = numpy.full((2, len(O.bodies)), math.inf)
 	for body in O.bodies:
 		blocked = set(body.state.blockedDOFs) if body.dynamic else set("xyzXYZ")
-		mass.append(math.inf if set("xyz") <= blocked else body.state.mass)
-		inertia.append(math.inf if set("XYZ") <= blocked else min(body.state.inertia))
-	return numpy.array(mass), numpy.array(inertia)
+		if not set("xyz") <= blocked:
+			mass[body.id] = body.state.mass
+		if not set("XYZ") <= blocked:
+			inertia[body.id] = min(body.state.inertia)
+	return mass, inertia
