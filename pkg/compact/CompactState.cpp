@@ -135,7 +135,8 @@ void CompactState::refreshMaterials()
 	for (const auto& material : materials) table.push_back(material->contactMaterial());
 	for (size_t a = 0; a < materials.size(); ++a)
 		for (size_t b = a; b < materials.size(); ++b)
-			if (const auto own = LinearMat::ownPair(*materials[a], *materials[b])) ownPairs.push_back({static_cast<int>(a), static_cast<int>(b), *own});
+			if (const auto own = LinearMat::ownPair(*materials[a], *materials[b]))
+				ownPairs.push_back({static_cast<int>(a), static_cast<int>(b), *own});
 	named("CompactLoop", {}, [&] { spheres.setMaterials(table, ownPairs); });
 }
 

@@ -123,7 +123,8 @@ void checkPair(const string& call, const hexmembrane::PairProperties& own)
 	if (given(own.friction)) hexmembrane::requireIn(hexmembrane::shared::friction, call + "friction", own.friction, "1");
 	if (given(own.rollingFriction)) hexmembrane::requireIn(hexmembrane::shared::rolling_friction, call + "rollingFriction", own.rollingFriction, "1");
 	if (own == hexmembrane::PairProperties())
-		hexmembrane::reject(call + "kn", NaN, "nothing is given", "kn and ks, emod and kratio, friction or rollingFriction; LinearMat.removePair takes a pair back");
+		hexmembrane::reject(call + "kn", NaN, "nothing is given",
+		                    "kn and ks, emod and kratio, friction or rollingFriction; LinearMat.removePair takes a pair back");
 }
 
 } // namespace
@@ -131,7 +132,8 @@ void checkPair(const string& call, const hexmembrane::PairProperties& own)
 void LinearMat::setPair(const string& partner, Real kn, Real ks, Real emod, Real kratio, Real friction, Real rollingFriction)
 {
 	const string call = "LinearMat.setPair.";
-	if (partner.empty()) hexmembrane::reject(call + "partner", "''", "a material without a label cannot be named", "give materials a label, and the partner's here");
+	if (partner.empty())
+		hexmembrane::reject(call + "partner", "''", "a material without a label cannot be named", "give materials a label, and the partner's here");
 	checkPair(call, {kn, ks, emod, kratio, friction, rollingFriction});
 	const Real numbers[] = {kn, ks, emod, kratio, friction, rollingFriction};
 	const auto at = std::find(pairPartners.begin(), pairPartners.end(), partner);
@@ -146,7 +148,8 @@ void LinearMat::setPair(const string& partner, Real kn, Real ks, Real emod, Real
 void LinearMat::removePair(const string& partner)
 {
 	const auto at = std::find(pairPartners.begin(), pairPartners.end(), partner);
-	if (at == pairPartners.end()) hexmembrane::reject("LinearMat.removePair.partner", "'" + partner + "'", "has no properties here", "see LinearMat.pairs()");
+	if (at == pairPartners.end())
+		hexmembrane::reject("LinearMat.removePair.partner", "'" + partner + "'", "has no properties here", "see LinearMat.pairs()");
 	const auto first = pairNumbers.begin() + (at - pairPartners.begin()) * pairNames.size();
 	pairNumbers.erase(first, first + pairNames.size());
 	pairPartners.erase(at);
@@ -178,8 +181,8 @@ boost::optional<hexmembrane::PairProperties> LinearMat::ownPair(const LinearMat&
 {
 	const auto ofA = a.pairWith(b.label), ofB = b.pairWith(a.label);
 	if (ofA && ofB && !(*ofA == *ofB))
-		hexmembrane::reject("LinearMat.setPair.partner", "'" + b.label + "'", "'" + a.label + "' and '" + b.label + "' each have other properties for the other",
-		                    "LinearMat.removePair of one of them");
+		hexmembrane::reject("LinearMat.setPair.partner", "'" + b.label + "'",
+		                    "'" + a.label + "' and '" + b.label + "' each have other properties for the other", "LinearMat.removePair of one of them");
 	return ofA ? ofA : ofB;
 }
 

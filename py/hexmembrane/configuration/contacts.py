@@ -21,7 +21,7 @@ class PairContact:
 	emod: Optional[float] = key(
 		None, "contact modulus, instead of kn and ks: kn = pi emod min(R1, R2)^2/(R1 + R2), pi emod R on platens and wall", "Pa", low=0, openLow=True
 	)
-	kratio: Optional[float] = key(None, "kn/ks with emod", "", low=1.0, high=1000)
+	kratio: Optional[float] = key(None, "kn/ks of the contact, with emod", "", low=1.0, high=1000)
 	friction: Optional[float] = shared("friction", "coefficient of friction of the contact, may be above either group's; none: the lesser of both", default=None, high=5)
 	rollingFriction: Optional[float] = shared("rolling_friction", "coefficient of rolling friction of the contact; none: the lesser of both, 0", default=None, high=5)
 
