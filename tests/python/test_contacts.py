@@ -58,8 +58,7 @@ def test_stiffPairsShortenTheStep(tmp_path):
 	assert timestep.membraneStep(springs, springs, 1000.0, 3e-3, 1e-3, math.inf, stiff.contacts.grainMembrane) == pytest.approx(step / math.sqrt(4.5), rel=1e-12)
 
 
-@pytest.mark.parametrize("tier", ["compact", "reference"])
-@pytest.mark.parametrize("boundary", ["membrane", "wall"])
+@pytest.mark.parametrize("tier, boundary", [("compact", "membrane"), ("reference", "wall")])
 def test_contactsInTheScene(O, tmp_path, runHere, tier, boundary):
 	from hexmembrane.scene.handles import Scene
 

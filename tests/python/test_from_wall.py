@@ -21,7 +21,8 @@ def config(folder, stages, **changes):
 
 def rowsOf(folder):
 	with open(folder / "records.csv", newline="", encoding="utf-8") as file:
-		return [{name: value for name, value in row.items() if name != "elapsed"} for row in csv.DictReader(file)]
+		rows = [{name.split(" ")[0]: value for name, value in row.items()} for row in csv.DictReader(file)]
+	return [{name: value for name, value in row.items() if name != "elapsed"} for row in rows]
 
 
 def test_plan(tmp_path):
