@@ -85,7 +85,7 @@ def compare(state, then=None):
 		raise RuntimeError(f"O.bodies = {len(O.bodies)} bodies: an empty scene is needed; fix: O.reset() first")
 	shown = then or state
 	before, notes = _pairsOf(state, then), []
-	forces, sign = _signed(shown.contacts, notes)
+	loads, sign = _signed(shown.contacts, notes)
 	left, taken = {}, []
 	for place in range(len(shown.contacts)):
 		why = _whyNot(shown.contacts, place) or ("not in the first export" if before[place] is None else "")
@@ -99,7 +99,7 @@ def compare(state, then=None):
 	else:
 		_advance(state, then, taken, contacts)
 	O.step()
-	return Comparison(shown, _quantities(shown, taken, units, contacts, forces, then is not None), left, notes)
+	return Comparison(shown, _quantities(shown, taken, units, contacts, loads, then is not None), left, notes)
 
 
 def units(state):
@@ -144,14 +144,15 @@ def _whyNot(contacts, k):
 
 
 def _signed(contacts, notes):
-	"""Forces with the sign of this format: those of an exporter that tells them on end 1 are turned; (normal, shear), the sign."""
+	"""Loads with the sign of this format: those of an exporter that tells them on end 1 are turned; (normal, shear, moment), the sign."""
 	normal, shear = scenes.split(contacts)
+	moment = numpy.nan_to_num(contacts.vectors("m"))
 	pressed = contacts["gap"] < 0
 	against = (normal[pressed] < 0).sum()
 	if pressed.any() and against > 0.9 * pressed.sum():
 		notes.append(f"forces and moments are turned: {against} of {pressed.sum()} contacts with an overlap would pull, so the table has them on end 1")
-		return (-normal, -shear), -1
-	return (normal, shear), 1
+		return (-normal, -shear, -moment), -1
+	return (normal, shear, moment), 1
 
 
 def _make(state, shown, taken, before, sign):
@@ -222,10 +223,9 @@ def _gaps(shown, taken):
 	return gaps
 
 
-def _quantities(shown, taken, units, contacts, forces, stepped):
+def _quantities(shown, taken, units, contacts, loads, stepped):
 	table, taken = shown.contacts, numpy.array(taken, dtype=int)
-	normal, shear = forces[0][taken], forces[1][taken]
-	moment = numpy.nan_to_num(table.vectors("m"))[taken]
+	normal, shear, moment = (values[taken] for values in loads)
 	ours = [scenes.memoryOf(contact, one) if contact.isReal else (0.0, numpy.zeros(3), numpy.zeros(3), numpy.zeros(3)) for contact, one, _ in contacts]
 	hereNormal = numpy.array([one[0] for one in ours])
 	hereShear, hereMoment = (numpy.array([one[k] for one in ours]).reshape(-1, 3) for k in (1, 2))

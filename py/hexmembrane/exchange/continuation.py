@@ -74,11 +74,11 @@ def _materials(state):
 	kn, ratio = contacts["kn"], contacts["kn"] / contacts["ks"]
 	if _same(kn[balls]) and _same(contacts["ks"][balls]):
 		springs = {"kn": 2 * float(kn[balls][0]), "ks": 2 * float(contacts["ks"][balls][0])}
-		own = numpy.full(len(contacts), springs["kn"])
+		own = {name: numpy.full(len(contacts), springs[name]) for name in ("kn", "ks")}
 	else:
 		emod = _one(state, balls, "kn/(pi min(R1, R2)^2/(R1 + R2))", kn / units)
 		springs = {"emod": emod, "kratio": _one(state, balls, "kn/ks", ratio)}
-		own = 2 * emod * units
+		own = {"kn": 2 * emod * units, "ks": 2 * emod * units / (springs["kratio"] or 1)}
 	walls = {}
 	for wall in sorted(set(contacts["end2"][~balls].tolist())):
 		mask = ~balls & (contacts["end2"] == wall)
@@ -87,12 +87,14 @@ def _materials(state):
 		if "emod" in springs and _same(kn[mask] / units[mask], springs["emod"]):
 			walls[wall] = {**springs, **friction, **rolling}
 			continue
-		least = 1 / kn - 1 / own
-		if not (least[mask] > 0).all():
-			wrong = f"wall {wall:g}: a contact has kn = {kn[mask].max():g} N/m, a ball's own spring {own[mask].min():g}, no wall in series with it gives that"
-			raise ConfigError("contacts.csv", str(state.folder), wrong, "properties of ball and wall, not of the pair (contact cmat)")
-		walls[wall] = {"kn": _one(state, mask, "kn of the wall", 1 / numpy.where(mask, least, 1)), **friction, **rolling}
-		walls[wall]["ks"] = walls[wall]["kn"] / _one(state, mask, "kn/ks", ratio)
+		walls[wall] = {**friction, **rolling}
+		for name in ("kn", "ks"):
+			value = contacts[name]
+			rest = numpy.where(mask, 1 / value - 1 / own[name], 1)
+			if not (rest > 0).all():
+				wrong = f"wall {wall:g}: a contact has {name} = {value[mask].max():g} N/m, which no spring of a wall in series with the ball's own makes"
+				raise ConfigError("contacts.csv", str(state.folder), wrong, "properties of ball and wall, not of the pair (contact cmat)")
+			walls[wall][name] = _one(state, mask, f"{name} of the wall", 1 / rest)
 	return {**springs, **common}, walls
 
 
@@ -153,9 +155,10 @@ def _move(state, bodies, damping):
 	speeds = zip(bodies.values(), state.balls.vectors("v").tolist(), state.balls.vectors("w").tolist())
 	for body, velocity, spin in speeds:
 		O.bodies[body].state.vel, O.bodies[body].state.angVel = yade.Vector3(*velocity), yade.Vector3(*spin)
-	loop, motion = O.engines[1], yade.NewtonIntegrator(damping=damping)
+	loop, motion = O.engines[1], yade.NewtonIntegrator(damping=damping, warnNoForceReset=False)
 	O.dt = state.contacts.number("timestep")
 	O.engines = [motion]
 	O.step()
+	motion.warnNoForceReset = True
 	kinds = [yade.Bo1_Sphere_Aabb(), yade.Bo1_Platen_Aabb(), yade.Bo1_CylinderWall_Aabb()]
 	O.engines = [yade.ForceResetter(), yade.InsertionSortCollider(kinds, verletDist=-0.1), loop, motion]

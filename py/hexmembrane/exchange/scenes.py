@@ -35,7 +35,7 @@ def appendBalls(balls, material, dynamic):
 	"""Spheres of a table; ids of bodies by PFC's id."""
 	made = []
 	for centre, radius in zip(balls.vectors().tolist(), balls["r"].tolist()):
-		made.append(utils.sphere(tuple(centre), radius, material=material, dynamic=dynamic, fixed=not dynamic))
+		made.append(utils.sphere(tuple(centre), radius, material=material, fixed=not dynamic))
 	return dict(zip(balls["id"].tolist(), O.bodies.append(made)))
 
 
