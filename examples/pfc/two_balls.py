@@ -1,5 +1,5 @@
 # Two balls of 1 and 2 mm, moved as told: load, slip, roll, and a contact bond that is pulled. scripts/yade -x examples/pfc/two_balls.py
-# Motion comes before the forces, as in PFC's cycle, so that cycle N here is cycle N there. The data files of PFC and the numbers: scripts/docs.d/pages/pfc.md
+# Motion comes before the forces, as in PFC's cycle, so that cycle N here is cycle N there. The data files of PFC and the numbers: examples/pfc/guide.md
 import hexmembrane  # noqa: F401
 from yade import *
 from yade.wrapper import Ig2_Sphere_Sphere_LinearScGeom, Ip2_LinearMat_LinearMat_LinearPhys, Law2_ScGeom_LinearPhys_Linear, LinearMat
@@ -16,7 +16,7 @@ CASES = {
 print("case cycle Fn [N] Fs [N] M [N m]")
 for name, (overlap, velocity, spins, bond, cycles) in CASES.items():
 	O.reset()
-	O.materials.append(LinearMat(kn=1e6, ks=5e5, friction=0.5, rollingFriction=0 if bond else 0.1, density=2650, cbTensile=2.0 if bond else 0, cbShear=2.0 if bond else 0))
+	O.materials.append(LinearMat(kn=1e6, ks=5e5, friction=0.5, rollingFriction=0 if bond else 0.1, density=2650, cbTensile=2.01 if bond else 0, cbShear=2.01 if bond else 0))
 	O.bodies.append([utils.sphere((0, 0, 0), R1, fixed=True), utils.sphere((0, 0, R1 + R2 - overlap), R2, fixed=True)])
 	O.bodies[1].state.vel = velocity
 	for body, spin in zip(O.bodies, spins):

@@ -13,6 +13,7 @@ import standInItasca
 import yade
 from hexmembrane.configuration import Config, ConfigError
 from hexmembrane.exchange import command, comparison, continuation, scenes, tables
+from hexmembrane.scene.builder import boxes, interactionLoop
 from hexmembrane.scene.platens import platen
 from tinyTest import TINY
 from yade import utils
@@ -39,9 +40,9 @@ def collide(O, springs, bonds):
 	for height, facing in ((-0.95e-3, 1), (6.6e-3, -1)):
 		wall = O.bodies.append(platen((2.8e-3, 2.8e-3, height), 2e-2, 5e-3, facing=facing, material="platen"))
 		O.bodies[wall].state.vel = (0, 0, _SPEED * facing)
-	loop = scenes.interactionLoop()
+	loop = interactionLoop()
 	loop.physDispatcher.functors[0].bondNewContacts = bonds
-	collider = yade.InsertionSortCollider([yade.Bo1_Sphere_Aabb(), yade.Bo1_Platen_Aabb()], verletDist=1e-4)
+	collider = yade.InsertionSortCollider(boxes(), verletDist=1e-4)
 	O.engines = [yade.ForceResetter(), collider, loop, yade.NewtonIntegrator(damping=_DAMP)]
 	O.dt = 4e-6
 	for _ in range(_STEPS):
@@ -239,7 +240,7 @@ def test_ballsAreASpecimen(exported, tmp_path):
 
 def test_tableOfColumns():
 	"""The files' columns as the documentation has them."""
-	assert tables.markdown() in (ROOT / "scripts" / "docs.d" / "pages" / "pfc-states.md").read_text(encoding="utf-8")
+	assert tables.markdown() in (ROOT / "examples" / "pfc" / "states.md").read_text(encoding="utf-8")
 
 
 # Exporters

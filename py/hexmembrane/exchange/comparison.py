@@ -14,6 +14,7 @@ from yade import O, utils
 
 from hexmembrane.configuration import ConfigError
 from hexmembrane.exchange import scenes, tables
+from hexmembrane.scene.builder import interactionLoop
 
 #: Contact models whose law is here.
 MODELS = ("linear", "rrlinear", "linearcbond")
@@ -159,7 +160,7 @@ def _make(state, shown, taken, before, sign):
 	"""Bodies and contacts; (kn, kr, rollingArm and ks of unit material, by contact; the contacts with their first body)."""
 	material = O.materials.append(yade.LinearMat(emod=1, kratio=1, friction=0, rollingFriction=1, density=1000, label="unit"))
 	bodies = scenes.appendBalls(state.balls, material, dynamic=False)
-	O.engines = [yade.ForceResetter(), scenes.interactionLoop()]
+	O.engines = [yade.ForceResetter(), interactionLoop()]
 	first, now = state.contacts, shown.contacts
 	centres = dict(zip(state.balls["id"].tolist(), zip(state.balls.vectors().tolist(), state.balls["r"].tolist())))
 	_, shear = scenes.split(first)

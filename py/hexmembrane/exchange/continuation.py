@@ -10,6 +10,7 @@ from yade import O, utils
 
 from hexmembrane.configuration import ConfigError
 from hexmembrane.exchange import comparison, scenes, tables
+from hexmembrane.scene.builder import boxes, interactionLoop
 
 #: Relative difference of properties that count as one, and of planes that do.
 _SAME = 1e-6
@@ -21,7 +22,7 @@ _BEHIND = 0.5
 def resume(state, damping=0.0):
 	"""Bring the state into YADE's empty scene, with the engines of the reference tier, one motion later than its tables.
 
-	Materials are labelled "grain" and "wall-ID". Each plane that a wall's contacts show is a fixed :class:`Platen` with the wall's velocity.
+	Materials are labelled "grain" and "wall-ID". Each plane that a wall's contacts show is a fixed ``Platen`` with the wall's velocity.
 
 	:param state: :class:`hexmembrane.exchange.tables.State`, see :func:`hexmembrane.exchange.tables.read`. :param damping: PFC's damp, local damping.
 	:returns: ids of bodies, by PFC's number of the ball.
@@ -41,7 +42,7 @@ def resume(state, damping=0.0):
 		factor = density / O.materials["grain"].density
 		moving.mass, moving.inertia = factor * moving.mass, factor * moving.inertia
 	planes = _planes(state)
-	O.engines = [yade.ForceResetter(), scenes.interactionLoop()]
+	O.engines = [yade.ForceResetter(), interactionLoop()]
 	_, shear = scenes.split(contacts)
 	moments = numpy.nan_to_num(contacts.vectors("m"))
 	for k, kind in enumerate(contacts["kind"]):
@@ -160,5 +161,4 @@ def _move(state, bodies, damping):
 	O.engines = [motion]
 	O.step()
 	motion.warnNoForceReset = True
-	kinds = [yade.Bo1_Sphere_Aabb(), yade.Bo1_Platen_Aabb(), yade.Bo1_CylinderWall_Aabb()]
-	O.engines = [yade.ForceResetter(), yade.InsertionSortCollider(kinds, verletDist=-0.1), loop, motion]
+	O.engines = [yade.ForceResetter(), yade.InsertionSortCollider(boxes(), verletDist=-0.1), loop, motion]

@@ -18,19 +18,6 @@ from hexmembrane.scene.platens import platen
 _Z = yade.Vector3(0, 0, 1)
 
 
-def interactionLoop():
-	"""The reference tier's functors for spheres, platens and cylinder walls."""
-	return yade.InteractionLoop(
-		[
-			yade.Ig2_Sphere_Sphere_LinearScGeom(avoidGranularRatcheting=False),
-			yade.Ig2_Platen_Sphere_ScGeom(),
-			yade.Ig2_CylinderWall_Sphere_ScGeom(),
-		],
-		[yade.Ip2_LinearMat_LinearMat_LinearPhys()],
-		[yade.Law2_ScGeom_LinearPhys_Linear()],
-	)
-
-
 def appendBalls(balls, material, dynamic):
 	"""Spheres of a table; ids of bodies by PFC's id."""
 	made = []
