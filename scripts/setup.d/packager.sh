@@ -29,7 +29,7 @@ setUpPackager() {
 	cat >"$work/try" <<-'END'
 		#!/bin/bash
 		here=$(dirname "$(readlink -f "$0")")
-		exec bwrap --bind / / --dev-bind /dev /dev --overlay-src /usr --overlay-src "$here/tree/usr" --ro-overlay /usr dh --help
+		exec bwrap --bind / / --dev-bind /dev /dev --overlay-src /usr --overlay-src "$here/tree/usr" --ro-overlay /usr "$@"
 	END
-	finishBeside "$1" "Debian's packaging tools" try
+	finishBeside "$1" "Debian's packaging tools" try dpkg-buildpackage --version
 }
