@@ -6,7 +6,9 @@
 # shellcheck disable=SC2034 # for scripts/package
 choosePackager() {
 	if [[ $host == native ]]; then
-		command -v dpkg-buildpackage >/dev/null && command -v dh >/dev/null || die "there is no dpkg-buildpackage or dh in PATH." "fix: apt-get install --no-install-recommends dpkg-dev debhelper"
+		if ! command -v dpkg-buildpackage || ! command -v dh; then
+			die "there is no dpkg-buildpackage or dh in PATH." "fix: apt-get install --no-install-recommends dpkg-dev debhelper"
+		fi >/dev/null
 		packager=(env)
 	else
 		local folder
