@@ -191,6 +191,7 @@ def test_goesOnFromTheVeryState(O, exported):
 		("contacts", "fric", [0.4, 0.3], "fric is from 0.[23] to 0.[34] in contacts of one kind.*fix: one material"),
 		("contacts", "model", ["hertz"], "has a contact model that is not here"),
 		("balls", "vx", [math.nan], "has balls without vx"),
+		("contacts", "kind", 500 * [tables.BALL_FACET], "has no contact of two balls"),
 		("contacts", "kn", [4e7], "kn.* is from|which no spring of a wall"),
 	],
 )
@@ -198,6 +199,7 @@ def test_cannotGoOn(O, exported, table, column, values, message):
 	state = tables.read(exported[0])
 	found = getattr(state, table).columns[column]
 	place = state.contacts["kind"].index(tables.BALL_BALL)
+	values = values[: len(found) - place]
 	found[place : place + len(values)] = values
 	with pytest.raises(ConfigError, match=message):
 		continuation.resume(state)
@@ -214,6 +216,8 @@ def test_cannotGoOn(O, exported, table, column, values, message):
 		("balls", "cycle=1", "cycle=9", "the tables are of different cycles, balls of 9, contacts of 1"),
 		("balls", ",r,", ",s,", "line 2: no column r"),
 		("contacts", "ball-ball", "ball-pebble", r"line \d+: kind = 'ball-pebble'; fix: ball-ball or ball-facet; clumps are not known here"),
+		("contacts", r"ball-ball,(\d+),\d+,", r"ball-ball,\1,\1,", r"line \d+: balls \d+ and \d+ are one; fix: each pair of balls once"),
+		("contacts", r"\n(\d+,ball-ball,.*)", r"\n\1\n\1", r"line \d+: balls \d+ and \d+ are in line \d+ already"),
 		("contacts", "ball-ball,", "ball-ball,9", r"line \d+: there is no ball 9"),
 		("contacts", ",linear", ",x,linear", r"line \d+: has 32 columns, the header 31"),
 		("contacts", r"ball-ball,\d+,", "ball-ball,one,", "line .*: end1 = 'one' is no number"),

@@ -94,13 +94,13 @@ def compare(state, then=None):
 			left[why] = left.get(why, 0) + 1
 		else:
 			taken.append(place)
-	units, contacts = _make(state, shown, taken, before, sign)
+	unit, contacts = _make(state, shown, taken, before, sign)
 	if then is None:
 		O.dt = STILL
 	else:
 		_advance(state, then, taken, contacts)
 	O.step()
-	return Comparison(shown, _quantities(shown, taken, units, contacts, loads, then is not None), left, notes)
+	return Comparison(shown, _quantities(shown, taken, unit, contacts, loads, then is not None), left, notes)
 
 
 def units(state):
@@ -118,6 +118,8 @@ def _pairsOf(state, then):
 	cycles = [other.contacts.number("cycle") for other in (state, then)]
 	if not cycles[1] - cycles[0] == 1:
 		raise ConfigError("--next", str(then.folder), f"is of cycle {cycles[1]:g}, the first of {cycles[0]:g}", "export, one cycle, export")
+	if sorted(state.balls["id"].tolist()) != sorted(then.balls["id"].tolist()):
+		raise ConfigError("--next", str(then.folder), "has other balls than the first export", "export the same balls twice")
 	if not then.contacts.number("timestep") > 0:
 		raise ConfigError("--next", str(then.folder), "names no timestep in its first line", "export it by scripts/pfc.d")
 	places, several = {}, set()
@@ -157,7 +159,7 @@ def _signed(contacts, notes):
 
 
 def _make(state, shown, taken, before, sign):
-	"""Bodies and contacts; (kn, kr, rollingArm and ks of unit material, by contact; the contacts with their first body)."""
+	"""Bodies and contacts: (kn, ks, kr and rollingArm of a contact of unit material, by contact; the contacts with their two bodies)."""
 	material = O.materials.append(yade.LinearMat(emod=1, kratio=1, friction=0, rollingFriction=1, density=1000, label="unit"))
 	bodies = scenes.appendBalls(state.balls, material, dynamic=False)
 	O.engines = [yade.ForceResetter(), interactionLoop()]
@@ -176,8 +178,8 @@ def _make(state, shown, taken, before, sign):
 			pairs.append((one, len(O.bodies) + len(plates) - 1))
 	O.bodies.append(plates)
 	contacts = [(utils.createInteraction(one, two), one, two) for one, two in pairs]
-	units = numpy.array([(c.phys.kn, c.phys.ks, c.phys.kr, c.phys.rollingArm) for c, *_ in contacts]).reshape(-1, 4)
-	for (contact, one, _), place, (_, ks, kr, arm) in zip(contacts, taken, units.tolist()):
+	unit = numpy.array([(c.phys.kn, c.phys.ks, c.phys.kr, c.phys.rollingArm) for c, *_ in contacts]).reshape(-1, 4)
+	for (contact, one, _), place, (_, ks, kr, arm) in zip(contacts, taken, unit.tolist()):
 		phys, rolling = contact.phys, now["rr_fric"][place]
 		phys.kn, phys.ks, phys.tangensOfFrictionAngle = (float(now[name][place]) for name in ("kn", "ks", "fric"))
 		phys.rollingArm = arm * rolling if now["model"][place] == "rrlinear" and rolling > 0 else 0.0
@@ -185,7 +187,7 @@ def _make(state, shown, taken, before, sign):
 		if now["model"][place] == "linearcbond" and first["cb_state"][before[place]] == tables.BONDED:
 			phys.bond(float(now["cb_tenf"][place]), float(now["cb_shearf"][place]))
 		scenes.setMemory(contact, one, sign * shear[before[place]], sign * moments[before[place]])
-	return units, contacts
+	return unit, contacts
 
 
 def _advance(state, then, taken, contacts):
@@ -215,16 +217,16 @@ def _length(vectors):
 def _gaps(shown, taken):
 	"""Distances of the balls' surfaces [m], NaN of a ball and a wall."""
 	balls, table = shown.balls, shown.contacts
-	rows = {number: k for k, number in enumerate(balls["id"].tolist())}
+	rows, centres = {number: k for k, number in enumerate(balls["id"].tolist())}, balls.vectors()
 	gaps = numpy.full(len(taken), numpy.nan)
 	for k, place in enumerate(taken):
 		if table["kind"][place] == tables.BALL_BALL:
 			one, two = (rows[table[end][place]] for end in ("end1", "end2"))
-			gaps[k] = numpy.linalg.norm(balls.vectors()[two] - balls.vectors()[one]) - balls["r"][one] - balls["r"][two]
+			gaps[k] = numpy.linalg.norm(centres[two] - centres[one]) - balls["r"][one] - balls["r"][two]
 	return gaps
 
 
-def _quantities(shown, taken, units, contacts, loads, stepped):
+def _quantities(shown, taken, unit, contacts, loads, stepped):
 	table, taken = shown.contacts, numpy.array(taken, dtype=int)
 	normal, shear, moment = (values[taken] for values in loads)
 	ours = [scenes.memoryOf(contact, one) if contact.isReal else (0.0, numpy.zeros(3), numpy.zeros(3), numpy.zeros(3)) for contact, one, _ in contacts]
@@ -232,7 +234,7 @@ def _quantities(shown, taken, units, contacts, loads, stepped):
 	hereShear, hereMoment = (numpy.array([one[k] for one in ours]).reshape(-1, 3) for k in (1, 2))
 	size = numpy.hypot(normal, _length(shear))
 	scale = numpy.maximum(size, _LEAST * (size.mean() if len(size) else 1)) + 1e-300
-	lever = units[:, 3]
+	lever = unit[:, 3]
 	rolling = numpy.array([table["model"][k] == "rrlinear" for k in taken], dtype=bool)
 	pairs = numpy.array([table["kind"][k] == tables.BALL_BALL for k in taken], dtype=bool)
 	emod, stiffness = table["emod"][taken], table["kn"][taken]
@@ -251,10 +253,10 @@ def _quantities(shown, taken, units, contacts, loads, stepped):
 		quantity("shear force" + told, everything, _length(shear), _length(hereShear), _length(shear - hereShear) / scale),
 		quantity("rolling moment" + (told if stepped else " within its limit"), rolling, _length(moment), _length(hereMoment), _length(moment - hereMoment) / (lever * scale)),
 	]
-	kr = table["ks"][taken] * units[:, 2] / units[:, 1]
+	kr = table["ks"][taken] * unit[:, 2] / unit[:, 1]
 	there = table["rr_kr"][taken]
 	found.append(quantity("rolling stiffness, ks Rm^2", rolling & ~numpy.isnan(there), there, kr, abs(there - kr) / kr))
-	byModulus = emod * units[:, 0]
+	byModulus = emod * unit[:, 0]
 	found.append(quantity("kn, by emod", emod > 0, stiffness, byModulus, abs(stiffness - byModulus) / stiffness))
 	found.append(quantity("bond holds", bonded, bonded.astype(float), still, abs(bonded - still)))
 	return [one for one in found if len(one.place)]

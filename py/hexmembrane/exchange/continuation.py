@@ -71,6 +71,8 @@ def _materials(state):
 	contacts = state.contacts
 	units = comparison.units(state)
 	balls = numpy.array([kind == tables.BALL_BALL for kind in contacts["kind"]], dtype=bool)
+	if not balls.any():
+		raise ConfigError("contacts.csv", str(state.folder), "has no contact of two balls, so their stiffness is unknown", "a state whose balls touch")
 	common = {"friction": _one(state, balls, "fric", contacts["fric"]), "rollingFriction": _one(state, balls, "rr_fric", numpy.nan_to_num(contacts["rr_fric"]))}
 	kn, ratio = contacts["kn"], contacts["kn"] / contacts["ks"]
 	if _same(kn[balls]) and _same(contacts["ks"][balls]):

@@ -195,16 +195,28 @@ def _checkEnds(state):
 	if len(balls) and not balls["r"].min() > 0:
 		line = balls.lines[int(balls["r"].argmin())]
 		raise ConfigError("balls.csv", str(state.folder), f"line {line}: r = {balls['r'].min():g} is not > 0", "a radius > 0")
+	pairs = {}
 	for line, kind, *ends in zip(contacts.lines, contacts["kind"], contacts["end1"].tolist(), contacts["end2"].tolist()):
 		if kind not in (BALL_BALL, BALL_FACET):
 			raise ConfigError("contacts.csv", str(state.folder), f"line {line}: kind = {shown(kind)}", f"{BALL_BALL} or {BALL_FACET}; clumps are not known here")
 		for end in ends if kind == BALL_BALL else ends[:1]:
 			if end not in ids:
 				raise ConfigError("contacts.csv", str(state.folder), f"line {line}: there is no ball {end:g}", "balls.csv and contacts.csv of one export")
+		if kind == BALL_BALL and (ends[0] == ends[1] or pairs.setdefault(frozenset(ends), line) != line):
+			wrong = f"line {line}: balls {ends[0]:g} and {ends[1]:g} are " + ("one" if ends[0] == ends[1] else f"in line {pairs[frozenset(ends)]} already")
+			raise ConfigError("contacts.csv", str(state.folder), wrong, "each pair of balls once")
+	_checkBonds(state)
 	normals = numpy.linalg.norm(contacts.vectors("n"), axis=1)
 	if len(contacts) and abs(normals - 1).max() > 1e-6:
 		k = int(abs(normals - 1).argmax())
 		raise ConfigError("contacts.csv", str(state.folder), f"line {contacts.lines[k]}: the normal has the length {normals[k]:g}", "unit normals")
+
+
+def _checkBonds(state):
+	contacts = state.contacts
+	for line, model, bond, *strengths in zip(contacts.lines, contacts["model"], contacts["cb_state"], contacts["cb_tenf"], contacts["cb_shearf"]):
+		if model == "linearcbond" and bond == BONDED and not min(strengths) > 0:
+			raise ConfigError("contacts.csv", str(state.folder), f"line {line}: a bonded contact has strengths {strengths[0]:g} and {strengths[1]:g}", "cb_tenf and cb_shearf > 0")
 
 
 def write(folder, name, rows, head):
