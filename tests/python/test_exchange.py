@@ -7,9 +7,11 @@ import pathlib
 import re
 import sys
 
+import contactScene
 import numpy
 import pytest
 import standInItasca
+import tiers
 import yade
 from hexmembrane.configuration import Config, ConfigError
 from hexmembrane.exchange import command, comparison, continuation, scenes, tables
@@ -167,6 +169,25 @@ def test_forcesOnTheOtherEnd(O, exported):
 		state.contacts.columns[name] = -state.contacts[name]
 	found = comparison.compare(state)
 	assert found.beyond(1e-9) == 0 and "so the table has them on end 1" in found.lines(1e-6)[2]
+
+
+def test_tablesOfEitherTier(O, tier, tmp_path):
+	"""After whole steps the places are those that the forces were computed for; balls alone may be chosen."""
+	contactScene.springs(rollingFriction=0.2)
+	for place in range(3):
+		contactScene.sphere((0, 0, 1.99e-3 * place), 1e-3)
+		O.bodies[-1].state.vel, O.bodies[-1].state.angVel = (5e-3 * place, 0, -0.1), (0, 10, 0)
+	contactScene.floor(1.0, 0.1, (0, 0, -0.99e-3))
+	O.engines = tiers.engines(tier)
+	O.dt = 1e-6
+	tiers.run(20)
+	scenes.write(tmp_path, ids=range(3))
+	O.reset()
+	state = tables.read(tmp_path)
+	found = comparison.compare(state)
+	assert len(state.contacts) == 3 and len(state.walls) == 1 and found.left == {} and found.beyond(1e-6) == 0
+	scenes.write(tmp_path, ids=[0], moved=False)
+	assert len(tables.read(tmp_path).balls) == 1
 
 
 # Going on

@@ -66,10 +66,10 @@ def write(folder, ids=None, moved=True):
 
 	:param folder: an existing folder. :param ids: bodies of the balls; None: all spheres. Contacts are those among them and with bodies that are no spheres.
 	:param moved: whether the bodies have moved since the forces were computed, as they have after a whole step; places are then those before that.
-	:raises OSError: a file cannot be written. :raises ValueError: a body or contact is of another kind.
+	:raises OSError: a file cannot be written. :raises ValueError: a body or contact is of another kind. :raises RuntimeError: the compact tier has not taken a step.
 	"""
 	loop = compactLoop()
-	if loop is not None and loop.listsMade:
+	if loop is not None:
 		loop.exportContacts()
 	spheres = {body.id for body in O.bodies if isinstance(body.shape, yade.Sphere)} if ids is None else set(ids)
 	back = O.dt if moved else 0.0
