@@ -208,6 +208,28 @@ TEST(SphereAssembly, materialsActAtOnce)
 	});
 }
 
+TEST(SphereAssembly, otherFrictionLeavesListsAndMemories)
+{
+	// against one whose lists are made anew
+	SphereAssembly stays = randomScene(100, 0);
+	for (int s = 0; s < 50; ++s) step(stays, 1);
+	SphereAssembly anew = stays;
+	ContactMaterial slippery = sand();
+	slippery.friction *= 0.2;
+	const long made = stays.listsMade();
+	stays.setMaterials({slippery, smoothMaterial()});
+	EXPECT_TRUE(stays.listsHold());
+	EXPECT_EQ(stays.listsMade(), made);
+	anew.setMaterials({slippery, smoothMaterial()});
+	anew.makeLists();
+	const double before = stays.sums.works.slip;
+	stays.computeLoads(dt, 1);
+	anew.computeLoads(dt, 1);
+	EXPECT_GT(stays.sums.works.slip, before) << "nothing slides";
+	EXPECT_NEAR(stays.sums.works.slip, anew.sums.works.slip, 1e-12 * stays.sums.works.slip);
+	EXPECT_LT(largestDifference(byId(stays), byId(anew)), 1e-12);
+}
+
 TEST(SphereAssembly, tooManyMaterialsAreRefused)
 {
 	SphereAssembly flat = randomScene(50, 0);
