@@ -25,7 +25,7 @@ over() {
 
 # setUpPackager FOLDER: makes it.
 setUpPackager() {
-	setUpBeside "$1" "Debian's packaging tools" "20 MB" '^-' dpkg-dev debhelper || return 0
+	setUpBeside "$1" "Debian's packaging tools" "20 MB" '^-' dpkg-dev debhelper gzip || return 0
 	mkdir -p "$work"/dpkg/{info,updates}
 	: >"$work/dpkg/status"
 	cat >"$work/try" <<-'END'
