@@ -58,6 +58,24 @@ def _platens(config, parts, laterOverhang):
 	return ids
 
 
+def boxes():
+	"""The reference tier's functors of bounding boxes."""
+	return [yade.Bo1_Sphere_Aabb(), yade.Bo1_Platen_Aabb(), yade.Bo1_CylinderWall_Aabb()]
+
+
+def interactionLoop():
+	"""The reference tier's InteractionLoop, for spheres, platens and cylinder walls of LinearMat."""
+	return yade.InteractionLoop(
+		[
+			yade.Ig2_Sphere_Sphere_LinearScGeom(avoidGranularRatcheting=False),
+			yade.Ig2_Platen_Sphere_ScGeom(),
+			yade.Ig2_CylinderWall_Sphere_ScGeom(),
+		],
+		[yade.Ip2_LinearMat_LinearMat_LinearPhys()],
+		[yade.Law2_ScGeom_LinearPhys_Linear()],
+	)
+
+
 def engines(config, inner, smallest):
 	"""The list of engines of the configuration's tier round those of lateral boundary and end platens, which both tiers share.
 
@@ -71,19 +89,11 @@ def engines(config, inner, smallest):
 		yade.ForceResetter(),
 		yade.MemoryOrder(),
 		yade.InsertionSortCollider(
-			[yade.Bo1_Sphere_Aabb(), yade.Bo1_Platen_Aabb(), yade.Bo1_CylinderWall_Aabb()],
+			boxes(),
 			verletDist=numerics.verlet * smallest,
 			avoidSelfInteractionMask=MASK,
 		),
-		yade.InteractionLoop(
-			[
-				yade.Ig2_Sphere_Sphere_LinearScGeom(avoidGranularRatcheting=False),
-				yade.Ig2_Platen_Sphere_ScGeom(),
-				yade.Ig2_CylinderWall_Sphere_ScGeom(),
-			],
-			[yade.Ip2_LinearMat_LinearMat_LinearPhys()],
-			[yade.Law2_ScGeom_LinearPhys_Linear()],
-		),
+		interactionLoop(),
 		*inner,
 		yade.NewtonIntegrator(damping=numerics.damping),
 		yade.RunawayGuard(),
