@@ -26,7 +26,7 @@ def linear(friction, density):
 @cache
 def pack():
 	"""Centres and radii of touching grains."""
-	packing = yade.CylinderPacking(radius=RADIUS, height=HEIGHT, radii=[1, 1.2, 1.5] * 60, porosity=0.46, stress=1e3, young=EMOD, friction=0.5)
+	packing = yade.CylinderPacking(radius=RADIUS, height=HEIGHT, radii=[1, 1.2, 1.5] * 60, porosity=0.46, stress=1e3, emod=EMOD, friction=0.5)
 	packing.generate()
 	return list(zip(packing.centres, packing.sizes))
 

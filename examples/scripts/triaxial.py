@@ -19,7 +19,7 @@ for name, friction, density in ("grain", 0.5, 2650), ("platen", 0.3, 2650), ("me
 	O.materials.append(LinearMat(emod=emod, kratio=3, friction=friction, rollingFriction=0.1, density=density, label=name))
 
 # grains that already touch, at a mean stress of 1 kPa
-packing = CylinderPacking(radius=radius, height=height, radii=[1, 1.2, 1.5] * 60, porosity=0.46, stress=1e3, young=emod, friction=0.5)
+packing = CylinderPacking(radius=radius, height=height, radii=[1, 1.2, 1.5] * 60, porosity=0.46, stress=1e3, emod=emod, friction=0.5)
 packing.generate()
 grains = O.bodies.append([utils.sphere(c, r, material="grain") for c, r in zip(packing.centres, packing.sizes)])
 bottom = O.bodies.append(platen((0, 0, 0), radius, 0.01, facing=1, material="platen"))

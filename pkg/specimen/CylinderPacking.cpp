@@ -38,11 +38,11 @@ void CylinderPacking::generate()
 	spec.tolerance = static_cast<double>(tolerance);
 	spec.shakes = shakes;
 	under.stress = static_cast<double>(stress);
-	under.law = {static_cast<double>(young), static_cast<double>(stiffnessRatio), static_cast<double>(friction), 0.5, static_cast<double>(rollingFriction)};
+	under.law = {static_cast<double>(emod), static_cast<double>(stiffnessRatio), static_cast<double>(friction), 0.5, static_cast<double>(rollingFriction)};
 	under.porosityTolerance = static_cast<double>(porosityTolerance);
 
 	hexmembrane::StressedPacking made;
-	named("CylinderPacking", {{"modulus", "young"}}, [&] {
+	named("CylinderPacking", {{"modulus", "emod"}}, [&] {
 		if (stress > 0)
 			made = hexmembrane::packUnderStress(under);
 		else

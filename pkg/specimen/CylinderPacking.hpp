@@ -65,9 +65,8 @@ public:
 		((long,seed,HEXMEMBRANE_PACKING_SEED_DEFAULT,,"Seed of the random numbers [-], " HEXMEMBRANE_PACKING_SEED_RANGE "."))
 		((Real,tolerance,1e-4,,"Room left round touching spheres over the mean radius [-], in (0, 0.01]. Smaller is slower in dense packings."))
 		((int,shakes,8,,"How often a jammed packing is loosened, shaken and grown again before it is given up [-], >= 0."))
-		((Real,stress,0,,"Mean pressure on the walls wanted [Pa], compression positive, at most 0.01 young. 0: a packing without contacts."))
-		((Real,young,NaN,,"Contact modulus [Pa], required with a stress: kn = 2 young r1 r2/(r1+r2) between grains, "
-			"young r at a wall (as YADE's FrictMat has it with equal moduli)."))
+		((Real,stress,0,,"Mean pressure on the walls wanted [Pa], compression positive, at most 0.01 emod. 0: a packing without contacts."))
+		((Real,emod,NaN,,"PFC's effective modulus of the contacts [Pa], required with a stress: as LinearMat.emod of grains and walls."))
 		((Real,stiffnessRatio,HEXMEMBRANE_STIFFNESS_RATIO_DEFAULT,,"kn/ks of the contacts [-], " HEXMEMBRANE_STIFFNESS_RATIO_RANGE "."))
 		((Real,friction,NaN,,"Coefficient of friction between the grains of the finished packing [-], required with a stress. The walls are smooth."))
 		((Real,rollingFriction,HEXMEMBRANE_ROLLING_FRICTION_DEFAULT,,"Coefficient of rolling friction μr between the grains of the finished packing [-], " HEXMEMBRANE_ROLLING_FRICTION_RANGE

@@ -23,7 +23,7 @@ from hexmembrane.scene.gradation import Gradation
 from scipy.spatial import cKDTree
 
 RADIUS, HEIGHT = 0.02, 0.08
-STRESSED = {"stress": 1e4, "young": 6e7, "friction": 0.4}
+STRESSED = {"stress": 1e4, "emod": 6e7, "friction": 0.4}
 CSV = pathlib.Path(hexmembrane.__file__).resolve().parents[2] / "examples" / "data" / "toyoura.csv"
 
 

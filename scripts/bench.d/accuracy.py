@@ -117,7 +117,7 @@ def publish(folder):
 	"""Make the study in a folder the one that tests' error budgets are made from: the rows of curves.csv that they use, in the package."""
 	from hexmembrane.scene import accuracy
 
-	used = {*(knob.name for knob in accuracy.KNOBS), accuracy.SWITCH, "skin", "packings"}
+	used = {*(knob.name for knob in accuracy.KNOBS), accuracy.VELOCITY_ON_STIFF, accuracy.SWITCH, "skin", "packings"}
 	rows = [row for row in table.read(folder / "curves.csv") if row["knob"] in used and row["quantity"] in accuracy.QUANTITIES]
 	with open(accuracy.FILE, "w", newline="", encoding="utf-8") as file:
 		writer = csv.DictWriter(file, rows[0], lineterminator="\n")

@@ -7,7 +7,7 @@ Arguments: folder of the results, parts to run (default: all):
   membrane   flexible against stock, R = 0.5 and 0.25 mm, and against the rigid wall
   age        the flexible scene of R = 0.5 mm fresh, after 5,000 and after 50,000 steps
   sheet      the flexible scene of R = 0.5 mm without and with bending stiffness, self-contact and facets of its sheet
-  threads    the flexible and the rigid scene with one thread and with two (yade -j2)
+  threads    the flexible and the rigid scene with one thread, two, four, up to the process' own (yade -jN)
   size       soil alone, 7,000 to 1,000,000 spheres; and the memory that the tier takes beside YADE's bodies
 """
 
@@ -93,21 +93,31 @@ def sheet(packed, rows):
 
 
 def threads(packed, rows):
-	"""One thread and two in turns on the same scene, in a process with two."""
+	"""One thread, two, four, and so on up to the process' own in turns on the same scene; and what it takes to hand the scene over, once an iteration."""
+	counts = [2**k for k in range(O.numThreads.bit_length()) if 2**k <= O.numThreads]
 	scenes = {"flexible, R = 0.50 mm": lambda: flexible("compact", packed, 0.5e-3), "flexible, R = 0.25 mm": lambda: flexible("compact", packed, 0.25e-3), "rigid": lambda: rigid("compact", packed)}
 	for name, build in scenes.items():
 		build()
 		O.dt = 1e-6
 		O.run(1000, True)
-		times = {1: [], 2: []}
+		times = {count: [] for count in counts}
 		for _ in range(7):
 			for count, values in times.items():
 				O.engines[1].ompThreads = count
 				values.append(measure(0, WINDOW, 3))
-		ratio = statistics.median(one / two for one, two in zip(times[1], times[2]))
 		for count, values in times.items():
-			rows.append(("%s, %d threads" % (name, count), "", contacts(), statistics.median(values), "", ratio if count == 2 else ""))
-		print("%s: one thread %.3f ms, two %.3f ms, %.2f times" % (name, *(statistics.median(values) for values in times.values()), ratio), flush=True)
+			ratio = statistics.median(one / other for one, other in zip(times[1], values))
+			rows.append(("%s, %d threads" % (name, count), "", contacts(), statistics.median(values), "", ratio if count > 1 else ""))
+			print("%s, %d threads: %.3f ms, %.2f times" % (name, count, statistics.median(values), ratio), flush=True)
+		for count in (1, counts[-1]):
+			O.engines[1].ompThreads = count
+			whole = []
+			for substeps in (1, WINDOW):
+				O.engines[1].substeps = substeps
+				whole.append(measure(0, WINDOW, 5))
+			handing = (whole[0] - whole[1]) * WINDOW / (WINDOW - 1)
+			rows.append(("%s, %d threads, scene handed over" % (name, count), "", contacts(), handing, "", handing / whole[1]))
+			print("%s, %d threads: handing the scene over %.3f ms, %.1f steps" % (name, count, handing, handing / whole[1]), flush=True)
 
 
 def resident():

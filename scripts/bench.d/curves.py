@@ -181,7 +181,7 @@ def orders(knobs, rows):
 		sign = -1 if knob.theory < 0 else 1
 		for name, (_, relative) in QUANTITIES.items():
 			of = [row for row in rows if row[0] == knob.name and row[3] == name and not math.isnan(row[6])]
-			others = [row for row in of if row[1] != knob.levels[0].value and row[6] > 0]
+			others = [row for row in of if row[1] != knob.levels[0].value and row[6] > 0 and not math.isnan(row[2])]
 			if len(others) < 3 or name.startswith("start") or name == "strain at peak":
 				continue
 			said = f"{knob.name}, {name}: theory {abs(knob.theory) or 'none'}, "

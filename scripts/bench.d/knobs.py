@@ -16,6 +16,8 @@ COMMON = {"shear": {"strain": 0.15}, "output": {"records": 60, "vtkEvery": 0, "c
 #: Share of the base run's steps that its consolidation takes: 8,500 of 38,000.
 CONSOLIDATION = 0.22
 BASE = "base"
+#: kn/(p d) of the stiffest grains, the reference of the stiffness.
+STIFF = 3000
 #: Porosity at which all numbers of grains can be packed; 500 do not go in at the base test's.
 LOOSER = 0.43
 _QUICK = load(QUICK)
@@ -87,9 +89,22 @@ def _velocities():
 		yield Level(f"{v:g}", v / _SOIL.height * TIME, {} if v == base else {"shear": {"velocity": v}}, shearing(base / v))
 
 
+def _velocitiesOnStiffGrains():
+	base = _QUICK.shear.velocity
+	for v in (0.015, 0.06, 0.12, 0.24, 0.48, 0.96):
+		change = {} if v == base else {"shear": {"velocity": v}}
+		cost = math.sqrt(_emod(STIFF) / _SOIL.emod) * shearing(base / v)
+		yield Level(f"{v:g}", v / _SOIL.height * TIME, {"specimen": {"emod": _emod(STIFF)}, **change}, cost, run="" if change else f"stiffness {STIFF}")
+
+
+def _emod(kappa):
+	"""Modulus [Pa] at which kn/(p d) is kappa."""
+	return 4 * _PRESSURE * kappa / math.pi
+
+
 def _moduli():
-	for kappa in (3000, 1000, 300, 100, None):
-		emod = 4 * _PRESSURE * kappa / math.pi if kappa else _SOIL.emod
+	for kappa in (STIFF, 1000, 300, 100, None):
+		emod = _emod(kappa) if kappa else _SOIL.emod
 		level = stiffnessLevel(emod, _PRESSURE)
 		yield Level(f"{level:.0f}", level, {"specimen": {"emod": emod}} if kappa else {}, math.sqrt(emod / _SOIL.emod))
 
@@ -131,6 +146,7 @@ def knobs():
 	return [
 		Knob("velocity", "inertial number", list(_velocities()), theory=1),
 		Knob("stiffness", "kn/(p d)", list(_moduli()), theory=-1),
+		Knob("velocity on stiff grains", "inertial number", list(_velocitiesOnStiffGrains()), theory=1),
 		Knob("damping", "local damping", _values("numerics", "damping", (0.1, 0.2, 0.3, 0.5, 0.7, 0.9)), theory=0),
 		Knob("size ratio", "R/r", list(_sizes()), theory=0),
 		Knob("skin", "skin over the smallest radius", _values("numerics", "skin", (0.1, 0.3, 0.6))),

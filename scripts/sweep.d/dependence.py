@@ -99,6 +99,7 @@ TABLE = {
 	"wall.*": _RIGID,
 	"platens.friction": (At(CONSOLIDATION, lambda config: config.platens.consolidationFriction is None), At(SHEAR)),
 	"platens.*": _ALWAYS[CONSOLIDATION],
+	"contacts.*": _ALWAYS[CONSOLIDATION],
 	"consolidation.*": _ALWAYS[CONSOLIDATION],
 	"shear.strain": (At(CONSOLIDATION, lambda config: config.platens.thickness is None), At(SHEAR)),  # platens are as thick as they travel
 	"shear.pressureTolerance": (At(SHEAR, lambda config: config.shear.stopOutsideTolerance),),

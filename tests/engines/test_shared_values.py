@@ -74,7 +74,7 @@ def loop(**settings):
 
 
 def packing(**settings):
-	given = {"radius": 0.02, "height": 0.04, "radii": [2e-3] * 60, "porosity": 0.45, "stress": 2e4, "young": 1e7, "friction": 0.4, **settings}
+	given = {"radius": 0.02, "height": 0.04, "radii": [2e-3] * 60, "porosity": 0.45, "stress": 2e4, "emod": 1e7, "friction": 0.4, **settings}
 	yade.CylinderPacking(**given).generate()
 
 

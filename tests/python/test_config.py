@@ -9,7 +9,7 @@ import pytest
 import yaml
 from hexmembrane import configuration
 from hexmembrane.configuration import Config
-from hexmembrane.configuration.schema import ConfigError, freeKeys, table, toDict
+from hexmembrane.configuration.schema import ConfigError, freeKeys, paths, table, toDict
 
 GOOD = {
 	"specimen": {"radius": 0.02, "height": 0.08, "gradation": "sand.csv", "grains": 100},
@@ -204,7 +204,7 @@ def test_resolvedRoundTrip(folder):
 	assert {"date", "hexmembrane", "commit", "yade", "python", "numpy", "threads"} <= set(text["made"])
 	assert text["made"]["yade"] and text["made"]["threads"] >= 1
 	keys = {row[0] for row in table(Config)}
-	assert keys == {f"{a}.{b}" for a, part in text.items() if isinstance(part, dict) and a != "made" for b in part} | {"title", "accuracy", "tier", "boundary", "stages"}
+	assert keys == set(paths({name: part for name, part in text.items() if name != "made"}))
 	assert toDict(configuration.load(folder / "resolved.yaml")) == toDict(made)
 	assert not list(folder.glob("*.part"))
 

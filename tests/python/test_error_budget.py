@@ -92,6 +92,19 @@ def test_massScalingIsInTheBudget(measured):
 	assert parts["membrane.densityScaling"][PEAK][0] == 0.003 and "as needed" in "\n".join(found.lines())
 
 
+@pytest.mark.parametrize("stiffness, share", [(100, 0), (100 * math.pi, 0), (math.sqrt(100 * math.pi * 3000), 0.5), (3000, 1)])
+def test_speedCostsMoreOnStiffGrains(measured, stiffness, share):
+	"""The velocity's error goes from one curve to the other with the logarithm of the stiffness."""
+	measured.curves[accuracy.VELOCITY_ON_STIFF] = accuracy.Curve(
+		numpy.array([1e-4, 1e-2]), *({PEAK: numpy.full(2, part), VOLUME: numpy.zeros(2)} for part in (0.1, 0.02, 0.03)), numpy.ones(2)
+	)
+	config = quick(specimen={"emod": 4e5 * stiffness / math.pi})
+	radii = specimen.plannedRadii(config)
+	found = accuracy.budget(config, radii, measured).parts[0]
+	alone = measured.curves["velocity"].error(PEAK, found[2])
+	assert found[0] == "shear.velocity" and found[3][PEAK] == pytest.approx([(1 - share) * soft + share * stiff for soft, stiff in zip(alone, (0.1, 0.02, 0.03))])
+
+
 def test_outsideOfWhatWasMeasured(measured):
 	config = quick(shear={"velocity": 3})
 	found = accuracy.budget(config, specimen.plannedRadii(config), measured)
@@ -185,6 +198,6 @@ def test_everyKnobWasMeasured():
 	measured = accuracy.Measured.of()
 	config = quick(OPEN)
 	found = accuracy.budget(config, specimen.plannedRadii(config))
-	assert set(measured.curves) == {knob.name for knob in accuracy.KNOBS} and len(found.parts) == len(accuracy.KNOBS)
+	assert set(measured.curves) == {knob.name for knob in accuracy.KNOBS} | {accuracy.VELOCITY_ON_STIFF} and len(found.parts) == len(accuracy.KNOBS)
 	assert found.unmeasured() == [] and set(measured.scatter) == set(measured.packings) == set(accuracy.QUANTITIES)
 	assert found.total(PEAK) < 0.2

@@ -8,7 +8,7 @@ import pytest
 
 PACKAGE = pathlib.Path(__file__).parents[2] / "py" / "hexmembrane"
 #: A sub-package imports from itself and from those before it. This is the order of py/hexmembrane/README.md.
-ORDER = ("configuration", "scene", "measure", "output", "laboratory", "report", "run")
+ORDER = ("configuration", "scene", "measure", "output", "laboratory", "report", "run", "exchange")
 WITHOUT_YADE = (
 	"configuration.json_schema",
 	"configuration.lab",
@@ -34,6 +34,7 @@ WITHOUT_YADE = (
 	"output.inside",
 	"output.clouds",
 	"output.groups",
+	"output.histories",
 	"output.records",
 	"output.vtk",
 	"output.plots",
@@ -59,6 +60,7 @@ WITHOUT_YADE = (
 	"run.lock",
 	"run.manifest",
 	"run.progress",
+	"exchange.tables",
 )
 
 

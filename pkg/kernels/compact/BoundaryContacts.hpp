@@ -45,6 +45,9 @@ public:
 	/// New list of spheres that are near; memories of the old one move over, see PairContacts::rebuild.
 	ContactWorks rebuild(std::vector<int> near, const std::vector<int>& newIndex, const std::vector<PairKind<double>>& kinds, const OfSphere& springs);
 
+	/// Other parameters by kind, with friction and rolling resistance where they were.
+	void setKinds(const std::vector<PairKind<double>>& kinds) { store.table = kinds; }
+
 	/// One step of the spheres from .. to - 1: their loads are added, what the boundary receives is added to `received`.
 	void sweep(int from, int to, const Boundary& boundary, const std::vector<Place>& places, const std::vector<Motion>& motions, std::vector<Load>& loads,
 	           double dt, BoundaryLoad& received);

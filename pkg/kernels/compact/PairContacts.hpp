@@ -37,6 +37,9 @@ public:
 
 	/// Elastic energy of all contacts (J).
 	double energy(const std::vector<Place>& places) const;
+	/// Other parameters by kind, with friction and rolling resistance where they were.
+	void setKinds(const std::vector<PairKind<double>>& kinds) { store.table = kinds; }
+
 	/// Calls visit(i, j, contact) for every touching pair.
 	template <typename Visit>
 	void forEachTouching(Visit&& visit) const

@@ -53,15 +53,45 @@ void SphereAssembly::startTravel()
 	gone = {++orders, 0};
 }
 
-void SphereAssembly::setMaterials(const std::vector<ContactMaterial>& table)
+namespace {
+
+/// Whether two tables have the same springs: coefficients of friction may differ, but not whether there is friction.
+bool sameSprings(std::vector<ContactMaterial> now, const std::vector<ContactMaterial>& then)
 {
-	if (table == materials) return;
+	if (now.size() != then.size()) return false;
+	const auto bothOrNone = [](double x, double y) { return (x > 0) == (y > 0); };
+	for (std::size_t m = 0; m < now.size(); ++m) {
+		if (!bothOrNone(now[m].friction, then[m].friction) || !bothOrNone(now[m].rollingFriction, then[m].rollingFriction)) return false;
+		now[m].friction = then[m].friction;
+		now[m].rollingFriction = then[m].rollingFriction;
+	}
+	return now == then;
+}
+
+} // namespace
+
+void SphereAssembly::setMaterials(const std::vector<ContactMaterial>& table, const std::vector<OwnPair>& own)
+{
+	if (table == materials && own == ownPairs) return;
 	if (table.size() > 255) reject("materials", double(table.size()), "too many", "255 materials at most: bodies with the same parameters can share one");
+	const bool listsStay = own == ownPairs && sameSprings(table, materials);
 	materials = table;
+	ownPairs = own;
+	pairs.clear();
 	kinds.clear();
 	for (const ContactMaterial& a : table)
-		for (const ContactMaterial& b : table) kinds.push_back(kindOf(a, b));
+		for (const ContactMaterial& b : table) pairs.push_back({a, b});
+	for (const OwnPair& pair : own) {
+		pairs[kindOfPair(pair.a, pair.b)] = paired(table[pair.a], table[pair.b], pair.own);
+		pairs[kindOfPair(pair.b, pair.a)] = paired(table[pair.b], table[pair.a], pair.own);
+	}
+	for (const MaterialPair& pair : pairs) kinds.push_back(kindOf(pair.a, pair.b));
 	if (listed.empty()) return;
+	if (listsStay) {
+		contacts.setKinds(kinds);
+		for (BoundaryContacts& boundary : boundaryContacts) boundary.setKinds(kinds);
+		return;
+	}
 	// springs are made with the lists; friction may have come or gone, and with it what a list holds
 	std::vector<int> same(places.size());
 	std::iota(same.begin(), same.end(), 0);

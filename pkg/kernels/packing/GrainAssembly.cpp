@@ -1,10 +1,13 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
 #include "kernels/packing/GrainAssembly.hpp"
 
-#include "kernels/base/LocalDamping.hpp"
+#include "kernels/base/Check.hpp"
+#include "kernels/boundary/CylinderContact.hpp"
+#include "kernels/boundary/PlatenContact.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace hexmembrane {
 
@@ -13,139 +16,110 @@ namespace {
 /// Reach of the neighbour list beyond contact, in largest radii.
 constexpr double skinRatio = 0.1;
 
+/// Of grains and of walls.
+std::vector<ContactMaterial> materials(const GrainLaw& law)
+{
+	ContactMaterial wall;
+	wall.emod = law.modulus;
+	wall.kratio = law.stiffnessRatio;
+	ContactMaterial grain = wall;
+	grain.friction = law.friction;
+	grain.rollingFriction = law.rollingFriction;
+	return {grain, wall};
+}
+
 } // namespace
 
 GrainAssembly::GrainAssembly(std::vector<Vec3> centres, std::vector<double> radii, double factor, double radius, double height, const GrainLaw& grainLaw)
-    : x(std::move(centres)), v(x.size(), Vec3::Zero()), w(x.size(), Vec3::Zero()), f(x.size(), Vec3::Zero()), t(x.size(), Vec3::Zero()), base(std::move(radii)),
-      r(base), touching(x.size(), 0), size(factor), cylinderRadius(radius), cylinderHeight(height), largest(*std::max_element(base.begin(), base.end())),
-      skin(skinRatio * largest), law(grainLaw)
+    : law(grainLaw), size(factor), cylinderRadius(radius / factor), cylinderHeight(height / factor)
 {
+	std::vector<SphereAssembly::Sphere> grains;
+	for (std::size_t i = 0; i < centres.size(); ++i) {
+		const double r = radii[i], mass = 0.5 * M_PI * law.modulus * r;
+		grains.push_back({int(i), {centres[i] / factor, r}, {Vec3::Zero(), Vec3::Zero()}, mass, 0.4 * mass * r * r, 0, false});
+	}
+	for (const auto& shape : shapes()) spheres.boundaries.push_back({shape, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), 1});
+	spheres.setSpheres(grains, int(grains.size()));
+	spheres.setMaterials(materials(law));
+	spheres.setSkin(skinRatio * *std::max_element(radii.begin(), radii.end()));
 }
 
-void GrainAssembly::refreshPairs()
+std::vector<std::shared_ptr<const BoundaryShape>> GrainAssembly::shapes() const
 {
-	const double grown = 2 * largest * std::abs(size - listedSize);
-	if (listedSize > 0 && grown < skin) {
-		const double free = 0.5 * (skin - grown);
-		bool valid = true;
-		for (std::size_t i = 0; i < x.size() && valid; ++i) valid = (x[i] - listed[i]).squaredNorm() < free * free;
-		if (valid) return;
-	}
-	NearPairs found = findNearPairs(x, r, skin, Vec3(-cylinderRadius, -cylinderRadius, 0), Vec3(cylinderRadius, cylinderRadius, cylinderHeight));
-	// both lists are sorted: springs move over by a merge
-	std::vector<ContactMemory<double>> moved(found.other.size(), noMemory());
-	for (std::size_t i = 0; i + 1 < pairs.start.size(); ++i) {
-		int old = pairs.start[i];
-		for (int k = found.start[i]; k < found.start[i + 1]; ++k) {
-			while (old < pairs.start[i + 1] && pairs.other[old] < found.other[k]) ++old;
-			if (old < pairs.start[i + 1] && pairs.other[old] == found.other[k]) moved[k] = memories[old];
-		}
-	}
-	memories.swap(moved);
-	pairs = std::move(found);
-	listed = x;
-	listedSize = size;
+	// solids that no grain passes
+	const double thick = cylinderRadius, wide = 2 * cylinderRadius;
+	const Vec3 axis = Vec3::UnitZ();
+	return {boundaryShape(PlatenBoundary{{-thick * axis, axis, wide, thick}}), boundaryShape(PlatenBoundary{{(cylinderHeight + thick) * axis, axis, wide, thick}}),
+	        boundaryShape(CylinderBoundary{0.5 * cylinderHeight * axis, cylinderRadius, cylinderHeight})};
 }
 
-void GrainAssembly::addWalls(std::size_t i)
+void GrainAssembly::shrink(double share)
 {
-	const auto push = [&](double overlap, const Vec3& inwards, double& total) {
-		if (overlap <= 0) return;
-		const double force = law.modulus * r[i] * overlap;
-		f[i] += force * inwards;
-		total += force;
-		sumForce += force;
-		++wallCount;
-		++touching[i];
-	};
-	push(r[i] - x[i][2], Vec3(0, 0, 1), endForce);
-	push(x[i][2] + r[i] - cylinderHeight, Vec3(0, 0, -1), endForce);
-	const double limit = cylinderRadius - r[i];
-	const double out2 = x[i][0] * x[i][0] + x[i][1] * x[i][1];
-	if (out2 > limit * limit) {
-		const double out = std::sqrt(out2);
-		push(out - limit, Vec3(-x[i][0] / out, -x[i][1] / out, 0), sideForce);
-	}
+	size /= share;
+	cylinderRadius *= share;
+	cylinderHeight *= share;
+	for (Place& place : spheres.places) place.centre *= share;
+	for (Motion& motion : spheres.motions) motion.velocity *= share;
+	const auto now = shapes();
+	for (int b : {bottom, top, side}) spheres.moveBoundary(b, now[b]);
+	spheres.noteWay(std::abs(1 / share - 1) * std::hypot(cylinderRadius, cylinderHeight));
+	spheres.endStep();
 }
 
 void GrainAssembly::setFriction(double friction, double rollingFriction)
 {
 	law.friction = friction;
 	law.rollingFriction = rollingFriction;
-	const LinearLaw<double> any = lawOf(1, 1); // which springs there are is the same for all contacts
-	for (ContactMemory<double>& memory : memories) memory = withoutLostSprings(memory, any);
-}
-
-LinearLaw<double> GrainAssembly::lawOf(double r1, double r2) const
-{
-	const double lever = rollingRadius(r1, r2), kn = 2 * law.modulus * lever, ks = kn / law.stiffnessRatio;
-	return {kn, ks, law.friction, law.rollingFriction > 0 ? ks * lever * lever : 0, law.rollingFriction * lever};
-}
-
-void GrainAssembly::computeForces()
-{
-	refreshPairs();
-	std::fill(f.begin(), f.end(), Vec3::Zero());
-	std::fill(t.begin(), t.end(), Vec3::Zero());
-	std::fill(touching.begin(), touching.end(), 0);
-	sideForce = endForce = sumForce = 0;
-	contactCount = slidingCount = wallCount = 0;
-	for (std::size_t i = 0; i < x.size(); ++i) {
-		for (int k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {
-			const int j = pairs.other[k];
-			const Vec3 d = x[j] - x[i];
-			const double reach = r[i] + r[j];
-			const double dist2 = d.squaredNorm();
-			if (dist2 >= reach * reach) {
-				memories[k] = noMemory();
-				continue;
-			}
-			const double dist = std::sqrt(dist2), overlap = reach - dist, armI = dist * r[i] / reach, armJ = dist - armI;
-			const Vec3 n = d / dist, velocity = v[j] - v[i] - (armI * w[i] + armJ * w[j]).cross(n);
-			ContactMemory<double>& memory = memories[k];
-			carry<double>(memory, n, w[i] + w[j], timeStep);
-			const Vec3 slide = timeStep * acrossNormal(velocity, n);
-			const UnbondedStep<double> step =
-			        advanceUnbonded<double>(lawOf(r[i], r[j]), contactMotion<double>(overlap, slide, w[j] - w[i], n, timeStep), memory);
-			if (step.slip > 0) ++slidingCount;
-			const double normal = step.normal;
-			const Vec3 onJ = normal * n + memory.shear, turn = n.cross(memory.shear), moment = momentOf(memory);
-			f[i] -= onJ;
-			f[j] += onJ;
-			t[i] -= armI * turn + moment;
-			t[j] -= armJ * turn - moment;
-			sumForce += normal;
-			++contactCount;
-			++touching[i];
-			++touching[j];
-		}
-		addWalls(i);
-	}
+	spheres.setMaterials(materials(law));
 }
 
 void GrainAssembly::step(double growth)
 {
-	size *= 1 + growth;
-	for (std::size_t i = 0; i < r.size(); ++i) r[i] = base[i] * size;
-	computeForces();
-	for (std::size_t i = 0; i < x.size(); ++i) {
-		const double perMass = 1 / (law.modulus * base[i]), perInertia = perMass / (0.4 * base[i] * base[i]);
-		for (int a = 0; a < 3; ++a) {
-			v[i][a] = dampedStep(v[i][a], f[i][a], perMass, timeStep, law.damping);
-			w[i][a] = dampedStep(w[i][a], t[i][a], perInertia, timeStep, law.damping);
-		}
-		x[i] += timeStep * v[i];
-	}
+	if (growth != 0) shrink(1 / (1 + growth));
+	if (!spheres.listsHold()) spheres.makeLists();
+	spheres.computeLoads(timeStep, 1);
+	for (int b : {bottom, top, side}) pressed[b] = spheres.onBoundary[b].normalForce;
+	const int lost = spheres.moveGrains(timeStep, law.damping, false, 1);
+	if (lost >= 0)
+		fail("modulus", law.modulus, "grain " + std::to_string(lost) + " flew off while the packing was made", "another seed, or a lower stress");
+	spheres.endStep();
+}
+
+std::vector<Vec3> GrainAssembly::centres() const
+{
+	std::vector<Vec3> all(spheres.places.size());
+	for (std::size_t k = 0; k < all.size(); ++k) all[spheres.id[k]] = spheres.places[k].centre * size;
+	return all;
 }
 
 double GrainAssembly::unbalancedRatio() const
 {
-	if (contactCount + wallCount == 0) return 0;
-	double net = 0;
-	for (const Vec3& force : f) net += force.norm();
-	return (net / double(f.size())) / (sumForce / (contactCount + wallCount));
+	double sum = pressed[bottom] + pressed[top] + pressed[side], net = 0;
+	int count = 0;
+	for (const BoundaryLoad& boundary : spheres.onBoundary) count += boundary.count;
+	spheres.contacts.forEachTouching([&](int i, int j, const Contact& contact) {
+		const Place &one = spheres.places[i], &other = spheres.places[j];
+		sum += contact.law.kn * std::max(0., one.radius + other.radius - (other.centre - one.centre).norm());
+		++count;
+	});
+	if (count == 0) return 0;
+	for (const Load& load : spheres.loads) net += load.force.norm();
+	return (net / double(spheres.loads.size())) / (sum / count);
 }
 
-int GrainAssembly::rattlers() const { return int(std::count(touching.begin(), touching.end(), 0)); }
+int GrainAssembly::contacts() const
+{
+	int count = 0;
+	spheres.contacts.forEachTouching([&](int, int, const Contact&) { ++count; });
+	return count;
+}
+
+int GrainAssembly::rattlers() const
+{
+	std::vector<char> touches(spheres.places.size(), 0);
+	spheres.contacts.forEachTouching([&](int i, int j, const Contact&) { touches[i] = touches[j] = 1; });
+	for (const BoundaryContacts& boundary : spheres.boundaryContacts) boundary.forEachTouching([&](int i, const Contact&) { touches[i] = 1; });
+	return int(std::count(touches.begin(), touches.end(), 0));
+}
 
 } // namespace hexmembrane

@@ -15,9 +15,12 @@ namespace {
 /// How much looser than wanted it starts, the densest and the loosest start, and the start of grains without friction. All of them are far from jamming.
 constexpr double looser = 0.08, densestStart = 0.45, loosest = 0.65, smoothStart = 0.55;
 /// Inertial number of the growth; share of the friction lost in the time that a grain needs to move its own size under the stress.
-constexpr double inertialNumber = 1e-3, frictionLoss = 0.05;
+constexpr double inertialNumber = 2e-3, frictionLoss = 0.1;
 /// Friction below this is none.
 constexpr double noFriction = 1e-4;
+/// Grains without friction are too stiff when they grow by less than this in so many steps.
+constexpr double leastGrowth = 2e-5;
+constexpr long stallSteps = 1000;
 /// What counts as the wanted stress and as equilibrium, for this many looks in a row.
 constexpr double stressTolerance = 0.03, equilibrium = 1e-3;
 constexpr int lookEvery = 100, looks = 3;
@@ -60,8 +63,12 @@ public:
 	/// Grows to size 1, then waits there until the stress is not above the wanted one. \returns false when even smooth grains are too stiff on the way
 	bool compress()
 	{
+		double before = 0;
 		while (grains.factor() < 1 || over() > 1 + stressTolerance) {
-			if (friction < noFriction) return false;
+			if (friction < noFriction && made % stallSteps == 0) {
+				if (grains.factor() - before < leastGrowth) return false;
+				before = grains.factor();
+			}
 			grains.step(std::min(growth * std::clamp(1 - over() / 2, 0.0, 1.0), 1 / grains.factor() - 1));
 			lowerFriction();
 			count();
@@ -118,7 +125,7 @@ private:
 [[noreturn]] void refuse(const StressedPackingSpec& spec, bool tooDense, double reached)
 {
 	// another seed or a neighbouring porosity may end a little off what this one reached, a loose one more than a dense one
-	const double advised = tooDense ? std::ceil((reached + 0.005) * 1000) / 1000 : std::floor((reached - 0.01) * 1000) / 1000;
+	const double advised = tooDense ? std::ceil((reached + 0.005) * 1000) / 1000 : std::floor((reached - 0.02) * 1000) / 1000;
 	fail("porosity", spec.packing.porosity,
 	     std::string(tooDense ? "denser" : "looser") + " than these " + std::to_string(spec.packing.radii.size()) + " grains get at " +
 	             formatNumber(spec.stress) + " Pa with friction " + formatNumber(spec.law.friction) +

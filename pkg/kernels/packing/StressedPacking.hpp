@@ -25,7 +25,7 @@ struct StressedPacking : SpherePacking {
 };
 
 /// Compresses a loose packing that is not yet even (SpherePacking at 0.08 above the wanted porosity, not spread). The grains grow inside fixed smooth walls,
-/// slowly (inertial number 1e-3 and less), with the friction of the finished packing at first. Where the mean stress exceeds the wanted one, friction is
+/// slowly (inertial number 2e-3 and less), with the friction of the finished packing at first. Where the mean stress exceeds the wanted one, friction is
 /// lowered until the grains give way, and rolling friction with it. So the packing reaches the wanted size at the wanted stress on one path and without
 /// trials. Then friction is set to its final value. The size is trimmed within the tolerance of the porosity until the stress (3 %) and the equilibrium
 /// (unbalanced ratio 1e-3) are reached.

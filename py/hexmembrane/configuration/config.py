@@ -10,6 +10,7 @@ import os
 from typing import List, Optional
 
 from hexmembrane.configuration import balls
+from hexmembrane.configuration.contacts import Contacts
 from hexmembrane.configuration.lab import Lab
 from hexmembrane.configuration.measure import Measure
 from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, paths, section, shared, toDict
@@ -329,6 +330,7 @@ class Config:
 	membrane: Membrane = section(Membrane, "the flexible membrane; particleRadius and placement also say the packing's radius")
 	wall: Wall = section(Wall, "the rigid wall, used with boundary: wall")
 	platens: Platens = section(Platens, "the end platens")
+	contacts: Contacts = section(Contacts, "contacts of a pair of groups with a stiffness or friction of their own")
 	consolidation: Consolidation = section(Consolidation, "isotropic consolidation")
 	shear: Shear = section(Shear, "shearing")
 	numerics: Numerics = section(Numerics, "time step, damping, threads")

@@ -9,7 +9,7 @@ from hexmembrane.output import tables
 from hexmembrane.output.tables import Column
 
 COLUMNS = (
-	Column("stage", "", "consolidation or shear; of a list of stages also unloading, hold, pressure, with a number from the second of a kind on: shear-2", text=True),
+	Column("stage", "", "consolidation or shear; of a list of stages also membrane, unloading, hold, pressure, with a number from the second of a kind on: shear-2", text=True),
 	Column("step", "", "YADE's step, O.iter"),
 	Column("time", "s", "YADE's time, O.time"),
 	Column("axial_strain", "-", "eps1 = (h0 - h)/h0 with h the distance of the platens' faces; compression positive"),

@@ -14,7 +14,7 @@ import shutil
 import numpy
 
 from hexmembrane.configuration import ConfigError
-from hexmembrane.configuration.stages import CONSOLIDATION, plan
+from hexmembrane.configuration.stages import CONSOLIDATION, MEMBRANE, boundaries, plan
 from hexmembrane.run.progress import clock
 from hexmembrane.scene import timestep
 
@@ -109,7 +109,7 @@ class Estimate:
 		particles, particleRadius = _membrane(config, float(radii.min()))
 		step = _step(config, radii, particleRadius)
 		stages = plan(config)
-		rises = [_changeTime(config, radii, stage) / step for stage in stages if stage.kind == CONSOLIDATION]
+		rises = [_changeTime(config, radii, stage) / step for stage in stages if stage.kind in (CONSOLIDATION, MEMBRANE)]
 		rise = max(rises)
 		consolidation = sum(min(2.5 * steps + config.output.consolidationSteps, config.consolidation.maxSteps) for steps in rises)
 		sheared = _seconds(config, radii, stages) / step
@@ -238,7 +238,7 @@ def _seconds(config, radii, stages):
 	"""Time in the test [s] of the stages that are no consolidation, nearly."""
 	total, at = 0.0, 0.0
 	for stage in stages:
-		if stage.kind == CONSOLIDATION:
+		if stage.kind in (CONSOLIDATION, MEMBRANE):
 			at = 0.0
 		elif not stage.straining:
 			total += _changeTime(config, radii, stage)
@@ -251,7 +251,7 @@ def _seconds(config, radii, stages):
 
 def _membrane(config, smallest):
 	"""(number, radius [m]) of the membrane's spheres, nearly; (0, None) with a rigid wall."""
-	if config.boundary != "membrane":
+	if "membrane" not in boundaries(config):
 		return 0, None
 	keys, specimen = config.membrane, config.specimen
 	radius = keys.particleRadius or keys.sizeRatio * smallest
@@ -265,12 +265,12 @@ def _step(config, radii, particleRadius):
 	numerics, keys, specimen = config.numerics, config.membrane, config.specimen
 	if numerics.dt is not None:
 		return numerics.dt
-	grains = timestep.grainStep(specimen, radii)
+	grains = timestep.grainsStep(config, radii)
 	if particleRadius is None:
 		return numerics.safety * grains
 	mass = timestep.sphereMass(particleRadius, keys.density)
 	bonds = 2 * math.sqrt(mass / (6 * keys.young * keys.thickness / (math.sqrt(3) * (1 - keys.poisson))))
-	membrane = timestep.membraneStep(specimen.springs, config.springs("membrane"), keys.density, float(radii.max()), particleRadius, bonds)
+	membrane = timestep.membraneStep(specimen.springs, config.springs("membrane"), keys.density, float(radii.max()), particleRadius, bonds, config.contacts.grainMembrane)
 	return numerics.safety * min(grains, math.sqrt(timestep.densityScaling(keys.densityScaling, grains, membrane)) * membrane)
 
 

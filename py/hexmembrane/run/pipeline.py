@@ -10,7 +10,7 @@ from yade import O
 from hexmembrane import configuration
 from hexmembrane.configuration import Config, ConfigError, toDict
 from hexmembrane.configuration.schema import freeKeys
-from hexmembrane.configuration.stages import plan
+from hexmembrane.configuration.stages import MEMBRANE, boundaries, boundariesIn, plan
 from hexmembrane.laboratory import curve, misfit
 from hexmembrane.output import records
 from hexmembrane.output.plots import plot
@@ -73,9 +73,10 @@ def _goOn(config, store, tell):
 	with Image.read(path, store.manifest.states[checkpoint.state]) as image:
 		image.load(path)
 	boundary = Scene().lateralBoundary.name
-	if (O.iter, boundary) != (checkpoint.step, config.boundary):
+	wanted = boundariesIn(config, checkpoint.stage)
+	if O.iter != checkpoint.step or boundary not in wanted:
 		raise CheckpointError(
-			f"state = '{path}': is of step {O.iter} with a {boundary}, the checkpoint is of step {checkpoint.step} with a {config.boundary}; "
+			f"state = '{path}': is of step {O.iter} with a {boundary}, the checkpoint is of step {checkpoint.step} with a {' or '.join(wanted)}; "
 			"fix: put the test's own state back"
 		)
 	store.goOnFrom(resumed)
@@ -129,9 +130,9 @@ def check(config, out, start=None, say=progress.tell):
 		f"specimen: {len(radii)} grains of radius {radii.min():.4g} to {radii.max():.4g} mm in {2e3 * keys.radius:.4g} x {1e3 * keys.height:.4g} mm"
 		+ (f", porosity {keys.porosity:g} asked for" if keys.made and start is None else "")
 	)
-	say(f"boundary: {config.boundary}, tier {config.tier}")
-	for planned in plan(config):
-		if start is None or planned.chain:
+	say(f"boundary: {', then '.join(boundaries(config))}, tier {config.tier}")
+	for planned in plan(config)[0 if start is None else from_state.nextStage(config, Scene().lateralBoundary.name) :]:
+		if start is None or planned.chain or planned.kind == MEMBRANE:
 			say(f"{planned.label}: {planned.describe()}")
 	say(f"nothing was made; the same command without --check makes it in {pathlib.Path(out)}" + (f", from {start}" if own or start else ""))
 
@@ -198,7 +199,7 @@ def _run(config, budget, settled, store, until, start, own, quiet, say, tell):
 		configuration.save(config, out / "config.yaml", budget=budget.asDict())
 		store.seal("config.yaml")
 		test = stages.TriaxialTest(config, out, quiet, store)
-		test.begin(next(k for k, planned in enumerate(test.plan) if planned.chain))
+		test.begin(from_state.nextStage(config, test.scene.lateralBoundary.name))
 		test.checkpoint()
 	else:
 		configuration.save(config, out / "config.yaml", budget=budget.asDict())

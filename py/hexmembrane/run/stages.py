@@ -11,12 +11,13 @@ import time
 
 from yade import BodyArrays, O
 
-from hexmembrane.configuration.stages import CONSOLIDATION, plan
+from hexmembrane.configuration.stages import CONSOLIDATION, MEMBRANE, plan
 from hexmembrane.measure import rows
 from hexmembrane.output.frames import Frames
 from hexmembrane.output.records import Records
 from hexmembrane.run.checkpoints import RECORDS, Store
 from hexmembrane.run.consolidation import Consolidation
+from hexmembrane.run.from_wall import FromWall
 from hexmembrane.run.inside import Inside
 from hexmembrane.run.manifest import Checkpoint, Entry
 from hexmembrane.run.stage import StageError
@@ -217,7 +218,8 @@ class TriaxialTest:
 	def stageAt(self, k):
 		"""What runs stage ``k`` of the plan."""
 		planned = self.plan[k]
-		return (Consolidation if planned.kind == CONSOLIDATION else Straining if planned.straining else Resting)(self, planned)
+		special = {CONSOLIDATION: Consolidation, MEMBRANE: FromWall}.get(planned.kind)
+		return (special or (Straining if planned.straining else Resting))(self, planned)
 
 	@property
 	def present(self):

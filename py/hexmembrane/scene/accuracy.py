@@ -9,6 +9,8 @@ The budget of a run, the largest difference to a run with all knobs at their ref
 	sum |m_k| + sqrt(sum h_k^2 + 4 s^2),   s^2 = s_0^2 + sum max(0, s_k^2 - s_0^2)
 
 Errors of one sign are not set off against those of the other. Scatter was measured at 1,200 grains and goes with 1/sqrt(N).
+
+Speed costs more on stiff grains, so its curve was measured at two stiffnesses; m, h and s between them are linear in the stiffness' logarithm.
 """
 
 import csv
@@ -20,6 +22,7 @@ from typing import Callable
 import numpy
 
 from hexmembrane.configuration import ConfigError
+from hexmembrane.configuration.stages import boundaries
 from hexmembrane.scene import timestep
 
 #: What errors are told of, as the curves have it: relative, and absolute.
@@ -51,7 +54,7 @@ class Knob:
 
 	def applies(self, config):
 		"""Whether the setting means something in this test."""
-		return not self.key.startswith("membrane.") or config.boundary == "membrane"
+		return not self.key.startswith("membrane.") or "membrane" in boundaries(config)
 
 
 def _rate(config, radii):
@@ -78,6 +81,10 @@ KNOBS = (
 	# the factor is not known before the scene is there: the largest that was measured
 	Knob("density scaling", "membrane.densityScaling", lambda c, r: c.membrane.densityScaling or 64.0, chosen=False),
 )
+#: The velocity's curve at the stiffest grains; ``velocity`` itself was measured on the base test's.
+VELOCITY_ON_STIFF = "velocity on stiff grains"
+#: kn/(p d) of the base test and of the stiffest grains.
+STIFFNESSES = 100 * math.pi, 3000.0
 #: The knob of ``specimen.massScaling``, which has no level between on and off.
 SWITCH = "mass scaling"
 
@@ -125,7 +132,7 @@ class Measured:
 
 		scatter, packings = ({name: float(column("scatter", knob, name).max()) for name in QUANTITIES} for knob in ("skin", "packings"))
 		curves = {}
-		for knob in {row["knob"] for row in rows} & {knob.name for knob in KNOBS}:
+		for knob in {row["knob"] for row in rows} & {*(knob.name for knob in KNOBS), VELOCITY_ON_STIFF}:
 			x = column("x", knob, PEAK)
 			rising = x.argsort()
 			mean, half = ({name: column(what, knob, name)[rising] for name in QUANTITIES} for what in ("fit", "fit_half_width"))
@@ -136,6 +143,16 @@ class Measured:
 			if row["knob"] == SWITCH:
 				switch.setdefault(row["value"], {})[row["quantity"]] = (abs(float(row["mean"])), float(row["half_width"]), float(row["scatter"]))
 		return cls(curves, switch, scatter, packings)
+
+	def error(self, knob, quantity, levels):
+		"""|m|, h and s of a knob; ``levels``: the level of each knob by name, numbers or arrays."""
+		x = levels[knob]
+		found = self.curves[knob].error(quantity, x)
+		if knob != "velocity" or VELOCITY_ON_STIFF not in self.curves:
+			return found
+		low, high = numpy.log(STIFFNESSES)
+		share = numpy.clip((numpy.log(levels["stiffness"]) - low) / (high - low), 0, 1)
+		return tuple((1 - share) * soft + share * stiff for soft, stiff in zip(found, self.curves[VELOCITY_ON_STIFF].error(quantity, x)))
 
 
 def _outwards(scatter):
@@ -213,11 +230,12 @@ def budget(config, radii, measured=None):
 	"""
 	measured = measured or Measured.of()
 	parts = []
-	for knob in KNOBS:
-		if knob.applies(config) and knob.name in measured.curves:
-			curve, x = measured.curves[knob.name], knob.level(config, radii)
-			errors = {name: _withGrains(curve.error(name, x), len(radii)) for name in QUANTITIES} if curve.covers(x) else None
-			parts.append((_keyOf(knob, config), _get(config, _keyOf(knob, config)), x, errors))
+	knobs = [knob for knob in KNOBS if knob.applies(config) and knob.name in measured.curves]
+	levels = {knob.name: knob.level(config, radii) for knob in knobs}
+	for knob in knobs:
+		x, covered = levels[knob.name], measured.curves[knob.name].covers(levels[knob.name])
+		errors = {name: _withGrains(measured.error(knob.name, name, levels), len(radii)) for name in QUANTITIES} if covered else None
+		parts.append((_keyOf(knob, config), _get(config, _keyOf(knob, config)), x, errors))
 	if config.specimen.massScaling:
 		parts.append(("specimen.massScaling", True, math.nan, {name: _withGrains(errors, len(radii)) for name, errors in measured.switch[_switchLevel(config)].items()}))
 	return Budget(parts, _scattered(measured.scatter, len(radii)), _scattered(measured.packings, len(radii)))
@@ -226,7 +244,7 @@ def budget(config, radii, measured=None):
 def _switchLevel(config):
 	if not config.specimen.massScaling:
 		return "off"
-	return "on with the membrane" if config.boundary == "membrane" and config.membrane.densityScaling is None else "on"
+	return "on with the membrane" if "membrane" in boundaries(config) and config.membrane.densityScaling is None else "on"
 
 
 def _keyOf(knob, config):
@@ -258,7 +276,8 @@ def choose(config, radii, measured=None):
 	knobs = [knob for knob in KNOBS if knob.applies(config) and knob.name in measured.curves]
 	levels = [_levels(measured.curves[knob.name].x) if knob.key in openKeys(config) else _level(knob, measured, config, radii) for knob in knobs]
 	grid = numpy.meshgrid(*levels, indexing="ij")
-	errors = [*(measured.curves[knob.name].error(PEAK, x) for knob, x in zip(knobs, grid)), measured.switch[_switchLevel(config)][PEAK]]
+	at = {knob.name: x for knob, x in zip(knobs, grid)}
+	errors = [*(measured.error(knob.name, PEAK, at) for knob in knobs), measured.switch[_switchLevel(config)][PEAK]]
 	floor = _scattered(measured.scatter, len(radii))[PEAK]
 	totals = _total([_withGrains(error, len(radii)) for error in errors], floor)
 	costs = math.prod(measured.curves[knob.name].cost(x) for knob, x in zip(knobs, grid))

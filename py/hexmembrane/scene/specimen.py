@@ -88,8 +88,7 @@ def plannedRadii(config):
 def make(config, say):
 	"""Pack the grains of the configuration's sizes into the cylinder that its lateral boundary will enclose.
 
-	Under ``specimen.stress`` the modulus is such that contacts of equal grains are as stiff as the test's: CylinderPacking's rule is
-	kn = 2 young r1 r2/(r1 + r2), PFC's pi emod min(r1, r2)^2/(r1 + r2), equal with young = pi emod/2. A direct stiffness is met by grains of the mean size.
+	Under ``specimen.stress`` contacts are as stiff as the test's. A direct stiffness is met by grains of the mean size.
 
 	Grains without friction have one porosity under that stress: without the key ``specimen.porosity`` it is theirs, with it what is given must be it.
 
@@ -104,7 +103,7 @@ def make(config, say):
 		if keys.friction == 0 and "specimen.porosity" not in config.given:
 			porosity = math.nan
 		mean = float((sizes**3).mean()) ** (1 / 3)
-		stressed = {"stress": keys.stress, "young": keys.springs.own(mean / 2) / (2 * mean), "stiffnessRatio": keys.springs.ratio}
+		stressed = {"stress": keys.stress, "emod": keys.springs.own(mean / 2) / (math.pi * mean), "stiffnessRatio": keys.springs.ratio}
 		stressed.update(friction=keys.friction, rollingFriction=keys.packingRollingFriction)
 	generator = yade.CylinderPacking(
 		radius=radius, height=keys.height, radii=sizes.tolist(), porosity=porosity, seed=keys.seed, **stressed
