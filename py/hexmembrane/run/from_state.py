@@ -22,7 +22,7 @@ from hexmembrane.scene import specimen
 from hexmembrane.scene.handles import Scene, compactLoop
 
 #: Sections and keys that act from the state on, or only say how a result is shown; files are known by the grains that they give.
-_APPLIED_SECTIONS = ("shear", "measure", "output", "numerics")
+_APPLIED_SECTIONS = ("shear", "measure", "output", "numerics", "lab")
 _APPLIED = ("title", "tier", "accuracy", "stages", "specimen.friction", "platens.friction", *(f"contacts.{name}.friction" for name in PAIRS), *(f"specimen.{name}" for name in PATHS))
 #: Keys that say how a packing is made.
 _MAKING = ("scale", "cutBelow", "cutAbove", "grains", "porosity", "seed", "stress", "packingRollingFriction", "ballsUnit", *SOURCES)
