@@ -8,6 +8,8 @@ import numpy
 import pytest
 from hexmembrane.configuration import Config, ConfigError
 from hexmembrane.configuration.stages import boundaries, boundariesIn, plan
+from hexmembrane.output import records
+from hexmembrane.report import runs
 from tinyTest import TINY, configure
 
 STAGES = [{"kind": "consolidation"}, {"kind": "membrane", "time": 0.008}, {"kind": "shear", "strain": 0.002, "records": 2}]
@@ -110,6 +112,8 @@ def test_wholeTest(O, tmp_path, runHere, monkeypatch, tier):
 	assert scene.lateralBoundary.name == "membrane" and "wall" not in {body.mat.label for body in O.bodies}
 	assert O.bodies[scene.topDrive.platen].shape.radius == pytest.approx(scene.lateralBoundary.membrane.innerRadius, rel=1e-12)
 	assert {path.name for path in (tmp_path / "out" / "vtk").glob("*.pvd")} == {"grains.pvd", "membrane.pvd"}
+	of = runs.read(tmp_path / "out")
+	assert of.boundary == "membrane" and len(of.sheared()["step"]) == 3 and records.sheared(records.read(tmp_path / "out" / "records.csv"))[0] == len(rows) - 3
 
 	# stopped at the membrane and resumed: the same rows
 	code, _, errors = runHere(file, "--out", tmp_path / "parts", "--from", state, "--until", "membrane")

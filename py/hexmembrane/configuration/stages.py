@@ -11,7 +11,8 @@ from typing import List, Optional
 from hexmembrane.configuration.schema import REQUIRED, ConfigError, key
 
 CONSOLIDATION, MEMBRANE, SHEAR, UNLOADING, HOLD, PRESSURE, CYCLES = KINDS = ("consolidation", "membrane", "shear", "unloading", "hold", "pressure", "cycles")
-_ISOTROPIC = (CONSOLIDATION, MEMBRANE)
+#: Kinds of stages until rest at the confining pressure, after which strains count anew.
+ISOTROPIC = (CONSOLIDATION, MEMBRANE)
 _TURNING = ("strain", "q")
 _STRAINING = (*_TURNING, "velocity", "velocities", "records", "strainStep")
 #: Keys that a kind of stage has.
@@ -271,6 +272,6 @@ def checkPlan(config):
 	if (largest := largestStrain(stages)) > 0:
 		config.shear.strain = largest if "shear.strain" not in config.given else max(largest, config.shear.strain)
 	kinds = [stage.kind for stage in stages]
-	chains = sum(kind not in _ISOTROPIC and before in _ISOTROPIC for before, kind in zip(kinds, kinds[1:]))
+	chains = sum(kind not in ISOTROPIC and before in ISOTROPIC for before, kind in zip(kinds, kinds[1:]))
 	if chains > 1 and (config.measure.local or config.measure.regions or config.measure.slices):
 		raise ConfigError("stages", len(stages), "a consolidation follows a shear, and measure counts from one of them", "leave measure out, or run two tests with --from")

@@ -5,6 +5,7 @@ Every row is written whole and flushed, so that a killed run leaves a readable f
 checkpoint and goes on. Strains count from the start of the row's stage (``stage`` column). Needs no YADE.
 """
 
+from hexmembrane.configuration.stages import ISOTROPIC
 from hexmembrane.output import tables
 from hexmembrane.output.tables import Column
 
@@ -164,7 +165,7 @@ def read(path, damage=None):
 
 def sheared(table):
 	"""Numbers of the rows that belong to no consolidation."""
-	return [i for i, stage in enumerate(table["stage"]) if not stage.startswith("consolidation")]
+	return [i for i, stage in enumerate(table["stage"]) if not stage.startswith(ISOTROPIC)]
 
 
 def markdown():

@@ -11,7 +11,7 @@ import numpy as np
 from hexmembrane.configuration import Config, ConfigError
 from hexmembrane.configuration.reader import read as readYaml
 from hexmembrane.configuration.schema import build
-from hexmembrane.configuration.stages import CONSOLIDATION, plan
+from hexmembrane.configuration.stages import ISOTROPIC, MEMBRANE, plan
 from hexmembrane.output import records, tables
 
 #: Folder of a study's stages under it, and the one of a test in a stage, see scripts/sweep.
@@ -60,13 +60,20 @@ class Run:
 		"""Whether its configuration has a list of stages."""
 		return isinstance(self.config.get("stages"), list)
 
+	@property
+	def boundary(self):
+		"""Keyword of the lateral boundary that its shear has."""
+		listed = self.config["stages"] if self.staged else []
+		changed = any(isinstance(stage, dict) and stage.get("kind") == MEMBRANE for stage in listed)
+		return "wall" if self.config.get("boundary") == "wall" and not changed else "membrane"
+
 	def kinds(self):
 		"""The kind of the stage of each row: 'unloading' of 'unloading-2'."""
 		return [re.sub(r"-\d+$", "", str(name)) for name in self.table.get("stage", [])]
 
 	def sheared(self, but=()):
 		"""The rows after a consolidation, of all stages but those of the kinds in ``but``; {} without any."""
-		chosen = np.array([kind not in (CONSOLIDATION, *but) for kind in self.kinds()], dtype=bool)
+		chosen = np.array([kind not in (*ISOTROPIC, *but) for kind in self.kinds()], dtype=bool)
 		return {name: column[chosen] for name, column in self.table.items() if name != "stage"} if chosen.any() else {}
 
 	def at(self, strains, steps):

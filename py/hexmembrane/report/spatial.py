@@ -80,8 +80,7 @@ def _strains(run, times):
 
 def _frames(run):
 	"""Pairs of files of a test, grains and boundary: (time, path, path or None) each, only those that are there."""
-	boundary = "wall" if run.config.get("boundary") == "wall" else "membrane"
-	around = dict(_series(run, boundary))
+	around = dict(_series(run, run.boundary))
 	return [(time, path, around.get(time)) for time, path in _series(run, "grains")]
 
 

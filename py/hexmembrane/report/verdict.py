@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from hexmembrane.configuration.config import Consolidation, Shear, restTolerance
-from hexmembrane.configuration.stages import CONSOLIDATION, PRESSURE
+from hexmembrane.configuration.stages import ISOTROPIC, PRESSURE
 from hexmembrane.report.summary import quantities
 from hexmembrane.scene.timestep import QUASISTATIC
 
@@ -72,7 +72,7 @@ def checks(run, scatter=None):
 def _turns(run):
 	"""Numbers of the rows that come after the last one of a consolidation, the number of all rows where it has not ended."""
 	kinds = [*run.kinds(), None]
-	return [k for k in range(1, len(kinds)) if kinds[k - 1] == CONSOLIDATION != kinds[k]]
+	return [k for k in range(1, len(kinds)) if kinds[k - 1] in ISOTROPIC and kinds[k] not in ISOTROPIC]
 
 
 def _anisotropy(run, first):
@@ -85,7 +85,7 @@ def _anisotropy(run, first):
 
 def _sheared(run, shear, first):
 	off = _anisotropy(run, first)
-	rest = restTolerance(run.key("consolidation", "tolerance"), run.config.get("boundary"), run.key("membrane", "pressureTime"))
+	rest = restTolerance(run.key("consolidation", "tolerance"), run.boundary, run.key("membrane", "pressureTime"))
 	arrived = run.key("shear", "pressureTolerance", Shear.__dataclass_fields__["pressureTolerance"].default)
 	found = [
 		_within("isotropic start", off, rest, "soil's axial and radial stress in the middle half against sigma3, first row of shear; consolidation.tolerance"),
