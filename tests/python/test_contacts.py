@@ -14,7 +14,7 @@ PAIRS = {
 	"grainWall": {"emod": 5e7, "kratio": 2, "friction": 0.6},
 	"grainMembrane": {"kn": 3e5, "ks": 1e5},
 }
-LOOSE = {"specimen": {"stress": 5e4, "friction": 0.3, "porosity": 0.43}, "consolidation": {"friction": 0.2, "unbalanced": 0.05, "tolerance": 0.3}}
+LOOSE = {"specimen": {"stress": 5e4, "friction": 0.3, "porosity": 0.45}, "consolidation": {"friction": 0.2, "unbalanced": 0.05, "tolerance": 0.3}}
 
 
 def made(folder, **changes):

@@ -111,7 +111,7 @@ def test_wholeTest(O, tmp_path, runHere, monkeypatch, tier):
 	assert max(abs(float(row["energy_error"])) for row in rows) < 1e-3
 	assert scene.lateralBoundary.name == "membrane" and "wall" not in {body.mat.label for body in O.bodies}
 	assert O.bodies[scene.topDrive.platen].shape.radius == pytest.approx(scene.lateralBoundary.membrane.innerRadius, rel=1e-12)
-	assert {path.name for path in (tmp_path / "out" / "vtk").glob("*.pvd")} == {"grains.pvd", "membrane.pvd"}
+	assert {"grains.pvd", "membrane.pvd"} <= {path.name for path in (tmp_path / "out" / "vtk").glob("*.pvd")} and not list((tmp_path / "out" / "vtk").glob("wall*"))
 	of = runs.read(tmp_path / "out")
 	assert of.boundary == "membrane" and len(of.sheared()["step"]) == 3 and records.sheared(records.read(tmp_path / "out" / "records.csv"))[0] == len(rows) - 3
 
