@@ -35,7 +35,7 @@ def test_plainYadeKnowsTheClasses(tmp_path):
 	script.write_text(SCRIPT)
 	plain = {name: value for name, value in os.environ.items() if name not in ("HEXMEMBRANE_BUILD", "PYTHONPATH")}
 	yade = plain.get("YADE_EXECUTABLE") or shutil.which("yade-double")
-	found = subprocess.run(_over(tree, yade, "-n", "-x", str(script)), env=plain, cwd="/tmp", stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120)
+	found = subprocess.run(_over(tree, yade, "-n", "-x", str(script)), env=plain, cwd="/tmp", stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=300)
 	(line,) = [line for line in found.stdout.splitlines() if line.startswith("installed:")] or [found.stdout + found.stderr]
 	assert line.split()[1].startswith("/usr/lib/") and line.split()[2:] == [hexmembrane.__version__, "0.02", "Config"]
 
