@@ -5,6 +5,7 @@
 #include "base/GatherBodies.hpp"
 
 #include <core/Scene.hpp>
+#include <lib/pyutil/gil.hpp>
 
 namespace yade {
 
@@ -29,7 +30,10 @@ void CompactLoop::collect(const Sheet& sheet)
 	next->indexSpheres();
 	for (const KeptContact& contact : kept) next->requirePlace(contact);
 	for (const KeptContact& contact : kept) next->put(contact);
-	state = std::move(next);
+	{
+		const gilLock lock; // the last to hold a shape that was made in Python, of a body that is gone, may be the state before
+		state = std::move(next);
+	}
 	stepShapes.clear();
 	contactFields.clear(); // what was loaded is of use once
 }

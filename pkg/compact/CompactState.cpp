@@ -131,8 +131,13 @@ bool CompactState::takeOrder(const vector<int>& order)
 void CompactState::refreshMaterials()
 {
 	vector<hexmembrane::ContactMaterial> table;
+	vector<hexmembrane::SphereAssembly::OwnPair> ownPairs;
 	for (const auto& material : materials) table.push_back(material->contactMaterial());
-	named("CompactLoop", {}, [&] { spheres.setMaterials(table); });
+	for (size_t a = 0; a < materials.size(); ++a)
+		for (size_t b = a; b < materials.size(); ++b)
+			if (const auto own = LinearMat::ownPair(*materials[a], *materials[b]))
+				ownPairs.push_back({static_cast<int>(a), static_cast<int>(b), *own});
+	named("CompactLoop", {}, [&] { spheres.setMaterials(table, ownPairs); });
 }
 
 void CompactState::refreshBoundary(const Scene& scene, int b)

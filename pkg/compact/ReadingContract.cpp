@@ -41,6 +41,7 @@ vector<ReadingRow> makeContract()
 	        {"State", "isDamped", "watched", "True for what moves freely; of no effect on what is blocked"},
 	        {"Sphere", "radius", "watched", "one for all particles of a membrane"},
 	        {"LinearMat", "kn, ks, emod, kratio, friction, rollingFriction", "read", "contacts follow at once; a spring that is taken away lets go"},
+	        {"LinearMat", "setPair, removePair", "read", "contacts of the pair follow at once"},
 	        {"LinearMat", "cbTensile, cbShear, density", "read", "by what makes bonds and bodies, not by a step"},
 	};
 	for (const BoundaryRegistry::Entry* boundary : BoundaryRegistry::byName())

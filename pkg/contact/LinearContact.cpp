@@ -8,6 +8,8 @@
 
 #include <boost/make_shared.hpp>
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <tuple>
 
@@ -102,6 +104,101 @@ void LinearMat::requireComplete() const
 	hexmembrane::requireIn(hexmembrane::shared::friction, "LinearMat.friction", getFriction(), "1");
 }
 
+namespace {
+
+constexpr std::array<const char*, hexmembrane::PairProperties::numbers> pairNames{"kn", "ks", "emod", "kratio", "friction", "rollingFriction"};
+
+void checkPair(const string& call, const hexmembrane::PairProperties& own)
+{
+	if (given(own.kn)) hexmembrane::requirePositive(call + "kn", own.kn, "N/m");
+	if (given(own.ks)) hexmembrane::requireNonNegative(call + "ks", own.ks, "N/m");
+	if (given(own.emod)) hexmembrane::requirePositive(call + "emod", own.emod, "Pa");
+	if (given(own.kratio)) hexmembrane::requirePositive(call + "kratio", own.kratio, "1");
+	if ((given(own.kn) || given(own.ks)) && (given(own.emod) || given(own.kratio)))
+		hexmembrane::reject(call + "kn", own.kn, "stiffness is given twice", "either kn and ks, or emod and kratio");
+	const char* const half = "the stiffness is given in half";
+	if (given(own.kn) != given(own.ks)) hexmembrane::reject(call + (given(own.kn) ? "ks" : "kn"), NaN, half, "give both kn and ks in N/m");
+	if (given(own.emod) != given(own.kratio))
+		hexmembrane::reject(call + (given(own.emod) ? "kratio" : "emod"), NaN, half, "give both emod in Pa and kratio");
+	if (given(own.friction)) hexmembrane::requireIn(hexmembrane::shared::friction, call + "friction", own.friction, "1");
+	if (given(own.rollingFriction)) hexmembrane::requireIn(hexmembrane::shared::rolling_friction, call + "rollingFriction", own.rollingFriction, "1");
+	if (own == hexmembrane::PairProperties())
+		hexmembrane::reject(call + "kn", NaN, "nothing is given",
+		                    "kn and ks, emod and kratio, friction or rollingFriction; LinearMat.removePair takes a pair back");
+}
+
+} // namespace
+
+void LinearMat::setPair(const string& partner, Real kn, Real ks, Real emod, Real kratio, Real friction, Real rollingFriction)
+{
+	const string call = "LinearMat.setPair.";
+	if (partner.empty())
+		hexmembrane::reject(call + "partner", "''", "a material without a label cannot be named", "give materials a label, and the partner's here");
+	checkPair(call, {kn, ks, emod, kratio, friction, rollingFriction});
+	const Real numbers[] = {kn, ks, emod, kratio, friction, rollingFriction};
+	const auto at = std::find(pairPartners.begin(), pairPartners.end(), partner);
+	const size_t place = at - pairPartners.begin();
+	if (at == pairPartners.end()) {
+		pairPartners.push_back(partner);
+		pairNumbers.resize(pairNumbers.size() + pairNames.size());
+	}
+	std::copy(std::begin(numbers), std::end(numbers), pairNumbers.begin() + place * pairNames.size());
+}
+
+void LinearMat::removePair(const string& partner)
+{
+	const auto at = std::find(pairPartners.begin(), pairPartners.end(), partner);
+	if (at == pairPartners.end())
+		hexmembrane::reject("LinearMat.removePair.partner", "'" + partner + "'", "has no properties here", "see LinearMat.pairs()");
+	const auto first = pairNumbers.begin() + (at - pairPartners.begin()) * pairNames.size();
+	pairNumbers.erase(first, first + pairNames.size());
+	pairPartners.erase(at);
+}
+
+boost::python::dict LinearMat::pairs() const
+{
+	boost::python::dict all;
+	for (size_t p = 0; p < pairPartners.size(); ++p) {
+		boost::python::dict one;
+		for (size_t k = 0; k < pairNames.size(); ++k) {
+			const Real number = pairNumbers[p * pairNames.size() + k];
+			if (given(number)) one[pairNames[k]] = number;
+		}
+		all[pairPartners[p]] = one;
+	}
+	return all;
+}
+
+boost::optional<hexmembrane::PairProperties> LinearMat::pairWith(const string& partner) const
+{
+	const auto at = std::find(pairPartners.begin(), pairPartners.end(), partner);
+	if (at == pairPartners.end()) return boost::none;
+	const Real* const n = pairNumbers.data() + (at - pairPartners.begin()) * pairNames.size();
+	return hexmembrane::PairProperties{n[0], n[1], n[2], n[3], n[4], n[5]};
+}
+
+boost::optional<hexmembrane::PairProperties> LinearMat::ownPair(const LinearMat& a, const LinearMat& b)
+{
+	const auto ofA = a.pairWith(b.label), ofB = b.pairWith(a.label);
+	if (ofA && ofB && !(*ofA == *ofB))
+		hexmembrane::reject("LinearMat.setPair.partner", "'" + b.label + "'",
+		                    "'" + a.label + "' and '" + b.label + "' each have other properties for the other", "LinearMat.removePair of one of them");
+	return ofA ? ofA : ofB;
+}
+
+hexmembrane::MaterialPair LinearMat::pairOf(const LinearMat& a, const LinearMat& b)
+{
+	const auto own = ownPair(a, b);
+	const hexmembrane::ContactMaterial ma = a.contactMaterial(), mb = b.contactMaterial();
+	return own ? hexmembrane::paired(ma, mb, *own) : hexmembrane::MaterialPair{ma, mb};
+}
+
+Real LinearMat::pairFriction(const LinearMat& other) const
+{
+	const auto pair = pairOf(*this, other);
+	return hexmembrane::kindOf(pair.a, pair.b).friction;
+}
+
 hexmembrane::ContactMaterial LinearMat::contactMaterial() const { return {kn, ks, emod, kratio, getFriction(), rollingFriction}; }
 
 void LinearPhys::bond(Real tensile, Real shear)
@@ -143,8 +240,8 @@ void Ip2_LinearMat_LinearMat_LinearPhys::go(const shared_ptr<Material>& material
 		                         std::to_string(contact->getId2()) + " is a Sphere; fix: use these contacts for spheres and for spheres on boundaries");
 
 	const bool spheres = given(r1) && given(r2);
-	const hexmembrane::ContactMaterial ma = a.contactMaterial(), mb = b.contactMaterial();
-	const auto law = spheres ? hexmembrane::sphereLaw(ma, mb, r1, r2) : hexmembrane::boundaryLaw(ma, mb, given(r1) ? r1 : r2);
+	const hexmembrane::MaterialPair pair = LinearMat::pairOf(a, b);
+	const auto law = spheres ? hexmembrane::sphereLaw(pair.a, pair.b, r1, r2) : hexmembrane::boundaryLaw(pair.a, pair.b, given(r1) ? r1 : r2);
 	auto phys = boost::make_shared<LinearPhys>();
 	phys->set(law, spheres);
 	if (bondNewContacts) bondByMaterial(*phys, a, b);

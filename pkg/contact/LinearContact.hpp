@@ -8,6 +8,8 @@
 #include <pkg/dem/FrictPhys.hpp>
 #include <pkg/dem/ScGeom.hpp>
 
+#include <boost/optional.hpp>
+
 namespace yade {
 
 class LinearMat : public FrictMat {
@@ -16,6 +18,15 @@ public:
 
 	/// What a body of this material brings to its contacts.
 	hexmembrane::ContactMaterial contactMaterial() const;
+	/// What contacts of these two have of their own; none: what the two bodies bring.
+	/// \throws std::invalid_argument when each of the two has properties for the other
+	static boost::optional<hexmembrane::PairProperties> ownPair(const LinearMat& a, const LinearMat& b);
+	/// The two as they act in contacts with each other. \throws as ownPair()
+	static hexmembrane::MaterialPair pairOf(const LinearMat& a, const LinearMat& b);
+	void setPair(const string& partner, Real kn, Real ks, Real emod, Real kratio, Real friction, Real rollingFriction);
+	void removePair(const string& partner);
+	boost::python::dict pairs() const;
+	Real pairFriction(const LinearMat& other) const;
 	/// \throws std::invalid_argument when stiffness or friction were not given
 	void requireComplete() const;
 	void postLoad(LinearMat&);
@@ -46,12 +57,26 @@ public:
 			"Tensile strength of a contact bond [N], >= 0, may be inf (PFC: cb_tenf). The contact has the smaller one; 0: no bond."))
 		((Real,cbShear,0,Attr::triggerPostLoad,
 			"Shear strength of a contact bond [N], >= 0, may be inf (PFC: cb_shearf). The contact has the smaller one; 0: no bond."))
+		((vector<string>,pairPartners,,Attr::hidden,""))
+		((vector<Real>,pairNumbers,,Attr::hidden,""))
 		,
 		createIndex();
 		young=poisson=frictionAngle=NaN;
 		,
 		.add_property("friction",&LinearMat::getFriction,&LinearMat::setFriction,
 			"Friction coefficient μ = tan frictionAngle [-], >= 0. The contact has the smaller one of its two bodies. Required.")
+		.def("setPair",&LinearMat::setPair,(boost::python::arg("partner"),boost::python::arg("kn")=NaN,boost::python::arg("ks")=NaN,
+			boost::python::arg("emod")=NaN,boost::python::arg("kratio")=NaN,boost::python::arg("friction")=NaN,boost::python::arg("rollingFriction")=NaN),
+			"Gives contacts with materials of the label partner properties of their own, in place of those before (PFC: contact cmat, by pair of groups). "
+			"What is not given follows from the two materials as without it.\n\n"
+			"kn, ks [N/m] or emod [Pa], kratio [-]: stiffness of the contact itself, not of a spring in series: "
+			"kn or π E* min(R1, R2)²/(R1 + R2), π E* R on a boundary. friction, rollingFriction [-]: those of the contact, beyond the smaller of both. "
+			"One call serves for both bodies; the label may be the material's own. New contacts have it in the reference tier, all at once in the compact one.\n\n"
+			"Raises ValueError for values out of range, stiffness in half, twice or not at all with nothing else given, or no label.\n\n"
+			"Example::\n\n\tgrain.setPair('platen',kn=1e7,ks=5e6,friction=.3)")
+		.def("removePair",&LinearMat::removePair,(boost::python::arg("partner")),"Takes back what setPair has given. Raises ValueError where there is nothing.")
+		.def("pairs",&LinearMat::pairs,"What setPair has given: a dict of dicts, by partner's label and name of the property.")
+		.def("pairFriction",&LinearMat::pairFriction,(boost::python::arg("other")),"Friction coefficient μ of contacts with another LinearMat [-], by setPair or the smaller of both.")
 		.def("requireComplete",&LinearMat::requireComplete,"Raises ValueError when stiffness or friction were not given. Of use before a run: "
 			"the same error inside YADE's interaction loop ends the program.")
 	);
@@ -65,6 +90,8 @@ private:
 	};
 	Values values() const;
 	void check() const;
+	/// What this one has for a partner of a label; none: nothing.
+	boost::optional<hexmembrane::PairProperties> pairWith(const string& partner) const;
 	Values accepted{NaN, NaN, NaN, NaN, 0, 0, 0, NaN, NaN};
 };
 REGISTER_SERIALIZABLE(LinearMat);
@@ -128,7 +155,7 @@ public:
 		"kn, ks: the two bodies' springs in series, 1/k = 1/k1 + 1/k2 (PFC's inheritance of properties given by body); "
 		"a body with emod brings kn = 2 π E* min(R1, R2)²/(R1 + R2) (2 π E* R on a boundary), "
 		"so that equal materials give PFC's deformability formula. "
-		"friction, rollingFriction, bond strengths: the smaller one. Rolling stiffness kr = ks Rm², Rm = R1 R2/(R1 + R2), on a boundary R.\n\n"
+		"friction, rollingFriction, bond strengths: the smaller one. LinearMat.setPair gives a pair of materials a stiffness and frictions of its own. Rolling stiffness kr = ks Rm², Rm = R1 R2/(R1 + R2), on a boundary R.\n\n"
 		"Existing contacts keep what they were made with. Errors end the program with their message, as every error inside YADE's interaction loop does.",
 		((bool,bondNewContacts,false,,"New contacts whose two materials both have cbTensile > 0 and cbShear > 0 are bonded. "
 			"Across gaps too where the Ig2's interactionDetectionFactor makes contacts."))

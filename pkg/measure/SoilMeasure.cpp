@@ -155,6 +155,43 @@ boost::python::tuple SoilMeasure::profile(int count) const
 	return boost::python::make_tuple(numpyArray(edges, "f8"), numpyArray(parts, "f8"), numpyTensors(stresses));
 }
 
+boost::python::dict SoilMeasure::contacts() const
+{
+	const Scene& scene = currentScene();
+	require(scene, "SoilMeasure");
+	enum Kind { ofGrain, ofMembrane, ofBottom, ofTop, ofOther };
+	vector<char> kinds(scene.bodies->size(), ofOther);
+	const vector<char> grain = grainsOf(scene);
+	for (size_t id = 0; id < kinds.size(); ++id)
+		if (grain[id]) kinds[id] = ofGrain;
+	if (membrane)
+		for (Body::id_t id : membrane->ids) kinds[id] = ofMembrane;
+	kinds[bottomPlaten] = ofBottom;
+	kinds[topPlaten] = ofTop;
+	vector<Body::id_t> ids;
+	vector<int> kind;
+	vector<Vector3r> ends;
+	vector<Real> normal, shear;
+	forEachContactOf(scene, "SoilMeasure", [&](const TouchingContact& c) {
+		const bool first = grain[c.id1], second = grain[c.id2];
+		if (!first && !second) return;
+		const Body::id_t other = first ? c.id2 : c.id1;
+		ids.insert(ids.end(), {first ? c.id1 : c.id2, other});
+		kind.push_back(kinds[other]);
+		ends.push_back(first ? c.centre1 : c.centre2);
+		ends.push_back(first && second ? c.centre2 : c.point);
+		normal.push_back(c.normalForce);
+		shear.push_back(std::sqrt(std::max(0., c.force.squaredNorm() - c.normalForce * c.normalForce)));
+	});
+	boost::python::dict values;
+	values["ids"] = numpyArray(ids, "i4", 2);
+	values["kind"] = numpyArray(kind, "i4");
+	values["ends"] = numpyArray(ends, "f8", 3).attr("reshape")(-1, 2, 3);
+	values["normalForce"] = numpyArray(normal, "f8");
+	values["shearForce"] = numpyArray(shear, "f8");
+	return values;
+}
+
 boost::python::object SoilMeasure::coordinationNumbers(const vector<Body::id_t>& ids) const
 {
 	const Scene& scene = currentScene();

@@ -34,6 +34,7 @@ public:
 	boost::python::dict stress() const;
 	boost::python::tuple profile(int slabs) const;
 	boost::python::tuple faces_get() const;
+	boost::python::dict contacts() const;
 	boost::python::object coordinationNumbers(const vector<Body::id_t>& ids) const;
 
 private:
@@ -68,6 +69,11 @@ private:
 		.def("profile",&SoilMeasure::profile,(boost::python::arg("slabs")=16),"Stress along the height: (edges [m], (n+1,); volumes [m³], (n,); "
 			"stress tensors [Pa], (n, 3, 3)) of n equal slabs from the lower platen's face. "
 			"Weighted with the volumes they add up to the whole specimen's stress exactly.")
+		.def("contacts",&SoilMeasure::contacts,"The touching contacts of the grains, in no certain order, as a dict of arrays with one row each: "
+			"'ids', (N, 2), of which the first is a grain; 'kind', (N,): the other one is 0 a grain, 1 of the membrane, 2 the lower platen, 3 the upper one, "
+			"4 any other body, such as the wall; 'ends' [m], (N, 2, 3): the grain's centre, and the other one's, "
+			"or the contact point where that is no grain; 'normalForce' [N], (N,), compression positive; 'shearForce' [N], (N,), its size. "
+			"A contact with a triangle of the sheet has a row for each corner that carries it, with the corner's share of the force.")
 		.def("coordinationNumbers",&SoilMeasure::coordinationNumbers,boost::python::arg("ids"),
 			"Contacts of each body that carry a normal force, all partners: integers, (N,).")
 		.add_property("faces",&SoilMeasure::faces_get,"Heights of the lower and the upper platen's face [m].")

@@ -15,8 +15,7 @@ void barrier(benchmark::State& state)
 #pragma omp barrier
 		}
 	}
-	state.counters["perBarrier"]
-	        = benchmark::Counter(barriers, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+	state.counters["perBarrier"] = benchmark::Counter(barriers, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void region(benchmark::State& state)
@@ -30,8 +29,7 @@ void region(benchmark::State& state)
 
 void counts(benchmark::internal::Benchmark* benchmark)
 {
-	for (int threads = 1; threads <= omp_get_num_procs(); threads *= 2)
-		benchmark->Arg(threads);
+	for (int threads = 1; threads <= omp_get_num_procs(); threads *= 2) benchmark->Arg(threads);
 	benchmark->UseRealTime();
 }
 

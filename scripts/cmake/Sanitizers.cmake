@@ -1,4 +1,31 @@
 # Sanitizers over the kernels and their tests (HEXMEMBRANE_SANITIZE), and the target kernel_threads: OpenMP for them.
+
+# onlyThreadedTests(LIST): under the thread sanitizer, takes from a list of test files those that name no kernel with a parallel loop. They have nothing to
+# say there, and take two minutes to build.
+function(onlyThreadedTests list)
+	if(NOT HEXMEMBRANE_SANITIZE STREQUAL thread)
+		return()
+	endif()
+	file(GLOB kernels CONFIGURE_DEPENDS pkg/kernels/*/*.cpp pkg/kernels/*/*.hpp)
+	set(threaded)
+	foreach(kernel IN LISTS kernels)
+		file(STRINGS "${kernel}" loops REGEX "omp parallel" LIMIT_COUNT 1)
+		if(loops)
+			get_filename_component(name "${kernel}" NAME_WE)
+			list(APPEND threaded ${name})
+		endif()
+	endforeach()
+	list(JOIN threaded "|" names)
+	set(kept)
+	foreach(test IN LISTS ${list})
+		file(STRINGS "${test}" uses REGEX "${names}" LIMIT_COUNT 1)
+		if(uses)
+			list(APPEND kept "${test}")
+		endif()
+	endforeach()
+	set(${list} ${kept} PARENT_SCOPE)
+endfunction()
+
 if(NOT HEXMEMBRANE_SANITIZE)
 	add_library(kernel_threads INTERFACE)
 	target_link_libraries(kernel_threads INTERFACE OpenMP::OpenMP_CXX)

@@ -25,9 +25,19 @@ _UNNAMED = """[...document.querySelectorAll("button, input, select, [role=img], 
 	.map((one) => one.outerHTML.slice(0, 80))"""
 #: Grains of a scene, and pictures a second while it is turned: as fine as the screen, and at half of that.
 _SPEED = """(async () => {
-	const scene = report.state.parts[0], fine = await scene.measure(30);
+	const scene = report.state.parts[0];
+	scene.setRatio(1);
+	const fine = await scene.measure(30);
 	scene.setRatio(0.5);
 	return [scene.radii.length, fine, await scene.measure(30)];
+})()"""
+#: What is told of force chains after their box is clicked, and what is shown of the grains.
+_CHAINS = """(async () => {
+	const scene = report.state.parts[0];
+	if (!scene?.chains) return null;
+	[...document.querySelectorAll(".tools label")].find((one) => one.textContent === "force chains").querySelector("input").click();
+	await scene.fill();
+	return [scene.told.textContent, scene.options.grains];
 })()"""
 
 
@@ -79,13 +89,20 @@ def look(browser, path, out):
 		text, curve = page.run(_CONTRASTS)
 		if text < _TEXT or curve < _CURVE:
 			wrong.append(f"{theme}: contrast of text {text:.2f}, of curves {curve:.2f}")
+		if (chains := page.run(_CHAINS)) is not None:
+			if " carry " not in chains[0] or chains[1] != "none":
+				wrong.append(f"force chains tell {chains}")
+			page.picture(out / f"{name}-chains-{theme}.png")
+			page.run(_CHAINS)
 		if theme == "light":
 			page.resize(*SIZES["wide"])
 			_moves(page, wrong)
 			print(f"{name}: {_figures(page, wrong)} files of figures")
-			if page.run("report.state.parts[0]?.measure !== undefined"):
+			for what in ("grains", "force chains") if page.run("report.state.parts[0]?.measure !== undefined") else ():
+				if what != "grains" and page.run(_CHAINS) is None:
+					continue
 				shown, fine, coarse = page.run(_SPEED)
-				print(f"{name}: {shown} grains at {fine:.1f} pictures a second in full, {coarse:.1f} at half of the resolution")
+				print(f"{name}: {what} of {shown} grains at {fine:.1f} pictures a second in full, {coarse:.1f} at half of the resolution")
 			if page.run("window.harmed !== undefined"):
 				wrong.append("a text of a test was run")
 			page.pdf(out / f"{name}.pdf")

@@ -99,11 +99,13 @@ TABLE = {
 	"wall.*": _RIGID,
 	"platens.friction": (At(CONSOLIDATION, lambda config: config.platens.consolidationFriction is None), At(SHEAR)),
 	"platens.*": _ALWAYS[CONSOLIDATION],
+	"contacts.*": _ALWAYS[CONSOLIDATION],
 	"consolidation.*": _ALWAYS[CONSOLIDATION],
 	"shear.strain": (At(CONSOLIDATION, lambda config: config.platens.thickness is None), At(SHEAR)),  # platens are as thick as they travel
 	"shear.pressureTolerance": (At(SHEAR, lambda config: config.shear.stopOutsideTolerance),),
 	"shear.*": _ALWAYS[SHEAR],
 	"measure.*": _ALWAYS[SHEAR],
+	"lab.*": (),
 	"numerics.threads": (),
 	"numerics.verlet": (At(CONSOLIDATION, _reference),),
 	"numerics.skin": (At(CONSOLIDATION, _compact),),
@@ -111,6 +113,7 @@ TABLE = {
 	"numerics.*": _ALWAYS[CONSOLIDATION],
 	"output.records": _ALWAYS[SHEAR],
 	"output.vtkEvery": (),
+	"output.contacts": (),
 	"output.report": (),
 	"output.checkpointEvery": (At(CONSOLIDATION, _reference),),  # there a test goes on from what it has saved
 	"output.*": _ALWAYS[CONSOLIDATION],

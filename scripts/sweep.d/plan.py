@@ -9,6 +9,7 @@ import shutil
 from dependence import CONSOLIDATION, SHEAR, SPECIMEN, contentOf, givesOwnPorosity, names
 import studyfile
 from hexmembrane.configuration import ConfigError, toDict
+from hexmembrane.configuration.lab import Lab
 from hexmembrane.configuration.specimen import PATHS
 from hexmembrane.run import estimate
 from hexmembrane.scene import accuracy, specimen
@@ -22,11 +23,12 @@ _PACKING_TIME, _PACKING, _PICTURE = 2e-3, 90, 150000
 
 
 def _settled(config):
-	"""The configuration with what ``accuracy`` chooses, and the radii of its grains; one thread, and pictures in VTK and pages only when they are asked for."""
+	"""The configuration with what ``accuracy`` chooses, and the radii of its grains; one thread, no laboratory, and pictures in VTK and pages only when they are asked for."""
 	radii = specimen.plannedRadii(config)
 	if config.accuracy is not None:
 		accuracy.choose(config, radii)
 	config.accuracy, config.numerics.threads = None, None
+	config.lab = Lab()  # its file is no part of a study's folder
 	if "output.vtkEvery" not in config.given:
 		config.output.vtkEvery = 0
 	if "output.report" not in config.given:

@@ -22,6 +22,7 @@ KEYS = {
 	"combine": "'product': every value with every other; 'list': the first of each axis, the second of each, ...",
 	"seeds": "list of specimen.seed, or how many, from 1; none: the base's",
 	"attempts": "how often a stage is tried before it counts as failed (2)",
+	"report": "whether the study's page is written at the end, report.html (true)",
 }
 SEED = "specimen.seed"
 MOST_ATTEMPTS = 20
@@ -60,6 +61,7 @@ def load(path):
 	for name in given:
 		if name not in KEYS:
 			raise ConfigError(f"study.{name}", given[name], "unknown key", f"{_guess(name, KEYS)}known keys are {', '.join(KEYS)}")
+	wantsPage(given)
 	base = baseOf(given, path.parent)
 	axes = _axes(given.get("axes"), base, path.parent)
 	seeds = seedsOf(given.get("seeds"), base)
@@ -74,6 +76,14 @@ def load(path):
 	if len(seeds) > 1 and all(stageOf(SEED, run.config) is None for run in runs):
 		raise ConfigError("seeds", seeds, "change nothing, the packing is a file", "take them out, or give specimen.gradation")
 	return Study(titleOf(given, path), list(axes), runs, attemptsOf(given.get("attempts", 2)), given)
+
+
+def wantsPage(given):
+	"""Whether a study's file, as it was read, asks for a page."""
+	wanted = given.get("report", True)
+	if not isinstance(wanted, bool):
+		raise ConfigError("study.report", wanted, "is neither true nor false", "write true or false")
+	return wanted
 
 
 def _guess(name, known):

@@ -20,10 +20,14 @@ import plan as plans
 import results
 import studyfile
 from hexmembrane.configuration import ConfigError
+from hexmembrane.report import page
+from hexmembrane.report.libraries import LibraryError
 from hexmembrane.run.progress import Progress, clock
 
 HERE = pathlib.Path(__file__).resolve().parent
 LOG = "snakemake.log"
+#: The study's page, and how many tests it has at most: each has curves of its own there.
+PAGE, _MOST_TESTS = "report.html", 200
 #: How often Snakemake begins a job anew whose own program was ended.
 _RESTARTS = 3
 _LOOK = 0.3
@@ -158,19 +162,37 @@ def advance(plan, inputs, folder, arguments, say):
 		_run(plan, folder, arguments)
 
 
+def _page(plan, folder, say):
+	"""Write the study's page, unless its key ``report`` says false; what is in the way is told of."""
+	path = folder / PAGE
+	if not studyfile.wantsPage(plan["study"]):
+		return
+	if len(plan["runs"]) > _MOST_TESTS:
+		say(f"no {path}: it would have {len(plan['runs'])} tests, {_MOST_TESTS} are its most; fix: scripts/report with folders of some of them")
+		return
+	try:
+		page.write(path, page.gather([folder]))
+		say(f"wrote {path}")
+	except LibraryError as error:
+		say(f"no {path}: {error}, or report: false")
+
+
 def execute(plan, inputs, folder, arguments, say):
-	"""Run a plan in its folder and gather; the exit code: 0, 1 when a run is not done."""
+	"""Run a plan in its folder, gather, and write its page; the exit code: 0, 1 when a run is not done."""
 	folder.mkdir(parents=True, exist_ok=True)
 	with lock(folder):
 		if arguments.again:
 			forget(plan, folder)
 		if results.upToDate(plan, folder):
 			say("nothing to do")
+			if not (folder / PAGE).exists():
+				_page(plan, folder, say)
 			with open(folder / results.RUNS, encoding="utf-8", newline="") as file:
 				return _tell(list(results.csv.reader(file)), folder, say)
 		advance(plan, inputs, folder, arguments, say)
 		table = results.gather(plan, folder)
 		archive.write(plan, folder)
+		_page(plan, folder, say)
 		return _tell(table, folder, say)
 
 

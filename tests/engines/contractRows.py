@@ -123,6 +123,9 @@ ROWS = {
 			("friction, from 0, of the membrane", "smooth", "membrane", "friction", 0.3),
 		)
 	},
+	"a pair's own stiffness and friction": Row(
+		"wall", lambda scene: O.materials["grain"].setPair("platen", kn=2e5, ks=1e5, friction=0.6), must="acts", remake=True, at=(BEFORE,)
+	),
 	"a material's density, which is nobody's mass": Row("wall", Put("material grain", "density", 5000.0), must="acts", effect=False),
 	# the scene
 	"O.dt": Row("membrane", Put("O", "dt", 1e-6), must="acts"),

@@ -168,14 +168,16 @@ def permanent(where, kind, value):
 
 
 def seriesFrom(a, b, shape, lever):
-	"""PFC's contact of two materials: springs in series, the smaller friction, kr = ks Rbar^2 where there is rolling friction."""
+	"""PFC's contact of two materials: springs in series, the smaller friction, or what the pair has of its own; kr = ks Rbar^2 where there is rolling friction."""
 
 	def springs(m):
 		return (2 * m.emod * shape, 2 * m.emod * shape / m.kratio) if math.isfinite(m.emod) else (m.kn, m.ks)
 
 	kn, ks = (x * y / (x + y) if x > 0 and y > 0 else 0.0 for x, y in zip(springs(a), springs(b)))
-	arm = lever * min(a.rollingFriction, b.rollingFriction)
-	return dict(kn=kn, ks=ks, kr=ks * lever**2 if arm > 0 else 0.0, rollingArm=arm, tangensOfFrictionAngle=min(a.friction, b.friction))
+	own = a.pairs().get(b.label) or b.pairs().get(a.label) or {}
+	kn, ks = own.get("kn", kn), own.get("ks", ks)
+	arm, friction = lever * min(a.rollingFriction, b.rollingFriction), own.get("friction", min(a.friction, b.friction))
+	return dict(kn=kn, ks=ks, kr=ks * lever**2 if arm > 0 else 0.0, rollingArm=arm, tangensOfFrictionAngle=friction)
 
 
 def remakeContacts():

@@ -81,6 +81,18 @@ def test_bondsBreakInOneSceneAndNotInTheOther(O):
 		assert (0 < len(left[0]) < begun) if breaks else len(left[0]) == begun > 100
 
 
+def test_bodyOfPythonIsGone(O):
+	"""Its shape dies where the arrays are collected anew, in YADE's own thread, which does not hold Python's lock."""
+	made = build("compact", lateral="wall")
+	O.run(20, True)
+	wall = made["wall"].wall
+	O.engines[1].engines = [engine for name, engine in made.items() if name != "wall"]
+	del made
+	O.bodies.erase(wall)
+	O.run(20, True)
+	assert O.iter == 40
+
+
 def test_stepsAreCounted(O):
 	build("compact", substeps=7)
 	O.run(1, True)

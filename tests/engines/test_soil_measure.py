@@ -79,6 +79,40 @@ def test_isTheSumOverTheContacts(O, tier, lateral):
 	assert np.einsum("s,sij->ij", volumes, slabs) / volumes.sum() == pytest.approx(found["whole"], rel=1e-9, abs=1e-9 * scale)
 
 
+@pytest.mark.parametrize("lateral, membraneFriction", (("membrane", 0.3), ("wall", 0)))
+def test_contactsAreThoseOfTheScene(O, tier, lateral, membraneFriction):
+	"""Each of O.interactions that a grain has, with its bodies, ends and forces."""
+	made = build(tier, lateral=lateral, membraneFriction=membraneFriction, **SMALL)
+	measure = measureOf(made)
+	run(40)
+	found = measure.contacts()
+	writeContacts()
+	grains, kinds = set(range(SMALL["grains"])), {measure.bottomPlaten: 2, measure.topPlaten: 3}
+	sheet = set(measure.membrane.ids) if measure.membrane else set()
+	expected = {}
+	for c in O.interactions:
+		first, second = c.id1 in grains, c.id2 in grains
+		if not first and not second:
+			continue
+		point, normal, half = np.array(c.geom.contactPoint), np.array(c.geom.normal), c.geom.penetrationDepth / 2
+		ends = [point - (c.geom.refR1 - half) * normal if first else point, point + (c.geom.refR2 - half) * normal if second else point]
+		grain, other = (c.id1, c.id2) if first else (c.id2, c.id1)
+		kind = 0 if first and second else 1 if other in sheet else kinds.get(other, 4)
+		expected[frozenset((grain, other))] = kind, ends if first else ends[::-1], c.phys.normalForce.dot(c.geom.normal), c.phys.shearForce.norm()
+	assert {frozenset(pair) for pair in found["ids"].tolist()} == set(expected) and len(found["ids"]) == len(expected)
+	assert set(found["ids"][:, 0]) <= grains and {0, 1 if sheet else 4, 2, 3} == set(found["kind"])
+	scale = found["normalForce"].max()
+	for k, (grain, other) in enumerate(found["ids"].tolist()):
+		kind, ends, normal, shear = expected[frozenset((grain, other))]
+		# two grains may come either way round
+		ends = min((ends, ends[::-1]) if kind == 0 else (ends,), key=lambda each: np.abs(found["ends"][k] - each).max())
+		assert found["kind"][k] == kind and np.abs(found["ends"][k] - ends).max() < 1e-12
+		assert found["normalForce"][k] == pytest.approx(normal, abs=1e-9 * scale) and found["shearForce"][k] == pytest.approx(shear, abs=1e-6 * scale)
+	assert found["shearForce"].max() > 0.01 * scale
+	with pytest.raises(RuntimeError, match="bottomPlaten = -1"):
+		SoilMeasure(bottomPlaten=-1, topPlaten=made["top"].platen, membrane=measure.membrane, wall=measure.wall).contacts()
+
+
 #: Facets so thick and soft that grains touch them in a sheet that is not stretched.
 THICK = dict(offset=0.88 * SMALL["particleRadius"], kn=300.0)
 

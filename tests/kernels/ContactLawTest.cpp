@@ -1,5 +1,5 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
-#include "kernels/contact/ContactLaw.hpp"
+#include "kernels/contact/ContactMaterial.hpp"
 
 #include "Support.hpp"
 
@@ -50,6 +50,39 @@ TEST(ContactLaw, SpringsAddInSeries)
 	const Springs direct = inSeries({2e5, 1e5}, {3e5, 0});
 	EXPECT_NEAR(direct.kn, 1.2e5, 1e-9);
 	EXPECT_EQ(direct.ks, 0);
+}
+
+TEST(ContactLaw, PairsOfMaterialsHaveTheirOwn)
+{
+	ContactMaterial soft, hard;
+	soft.emod = 1e7;
+	soft.kratio = 3;
+	soft.friction = 0.1;
+	hard.kn = hard.ks = 1e9;
+	hard.rollingFriction = 0.5;
+	PairProperties own;
+	const MaterialPair same = paired(soft, hard, own);
+	EXPECT_TRUE(same.a == soft && same.b == hard) << "nothing is given";
+	own.friction = 0.7;
+	EXPECT_EQ(boundaryLaw(paired(soft, hard, own).a, paired(soft, hard, own).b, 1e-3).friction, 0.7);
+	EXPECT_EQ(boundaryLaw(paired(soft, hard, own).a, paired(soft, hard, own).b, 1e-3).kn, boundaryLaw(soft, hard, 1e-3).kn);
+	own.kn = 3e6;
+	own.ks = 0;
+	const MaterialPair direct = paired(soft, hard, own);
+	for (double r : {1e-4, 1e-3}) {
+		EXPECT_DOUBLE_EQ(sphereLaw(direct.a, direct.b, r, 2 * r).kn, 3e6);
+		EXPECT_DOUBLE_EQ(boundaryLaw(direct.a, direct.b, r).kn, 3e6);
+		EXPECT_EQ(boundaryLaw(direct.a, direct.b, r).ks, 0);
+	}
+	own.kn = own.ks = std::nan("");
+	own.emod = 2e8;
+	own.kratio = 4;
+	own.rollingFriction = 0.2;
+	const MaterialPair modulus = paired(soft, hard, own);
+	const ContactLaw law = sphereLaw(modulus.a, modulus.b, 1e-3, 3e-3);
+	EXPECT_DOUBLE_EQ(law.kn, M_PI * 2e8 * 1e-6 / 4e-3);
+	EXPECT_DOUBLE_EQ(law.ks, law.kn / 4);
+	EXPECT_DOUBLE_EQ(law.rollingArm, 0.2 * 0.75e-3);
 }
 
 TEST(ContactLaw, NormalForceHasNoTension)

@@ -208,6 +208,38 @@ TEST(SphereAssembly, materialsActAtOnce)
 	});
 }
 
+TEST(SphereAssembly, pairsOfMaterialsHaveTheirOwn)
+{
+	SphereAssembly flat = randomScene(100, 30);
+	flat.makeLists();
+	PairProperties own;
+	own.kn = 3e4;
+	own.ks = 1e4;
+	own.friction = 0.6; // above either's: smooth particles get a memory of their contacts
+	flat.setMaterials({sand(), smoothMaterial()}, {{1, 0, own}});
+	flat.computeLoads(dt, 1);
+	int ofPair = 0, ofGrains = 0;
+	flat.contacts.forEachTouching([&](int i, int j, const Contact& contact) {
+		const bool mixed = flat.material[i] != flat.material[j];
+		(mixed ? ofPair : ofGrains) += 1;
+		const ContactLaw law = sphereLaw(sand(), sand(), flat.places[i].radius, flat.places[j].radius);
+		EXPECT_DOUBLE_EQ(contact.law.kn, mixed ? 3e4 : law.kn);
+		EXPECT_DOUBLE_EQ(contact.law.ks, mixed ? 1e4 : law.ks);
+		EXPECT_DOUBLE_EQ(contact.law.friction, mixed ? 0.6 : law.friction);
+		EXPECT_DOUBLE_EQ(flat.lawOf(i, j).kn, contact.law.kn);
+	});
+	EXPECT_GT(ofPair, 10);
+	EXPECT_GT(ofGrains, 10);
+	own = {};
+	own.emod = 4e6;
+	own.kratio = 2;
+	flat.setMaterials({sand(), smoothMaterial()}, {{0, 1, own}});
+	EXPECT_NEAR(flat.lawOf(0, flat.grains()).kn, 4e6 * contactShape(flat.places[0].radius, 0.7e-3), 1e-9 * 4e6);
+	EXPECT_TRUE(flat.isSmooth(0, flat.grains()));
+	flat.setMaterials({sand(), smoothMaterial()});
+	EXPECT_EQ(flat.lawOf(0, flat.grains()).kn, sphereLaw(sand(), smoothMaterial(), flat.places[0].radius, 0.7e-3).kn);
+}
+
 TEST(SphereAssembly, otherFrictionLeavesListsAndMemories)
 {
 	// against one whose lists are made anew

@@ -9,7 +9,7 @@ import pytest
 import yaml
 from hexmembrane import configuration
 from hexmembrane.configuration import Config
-from hexmembrane.configuration.schema import ConfigError, freeKeys, table, toDict
+from hexmembrane.configuration.schema import ConfigError, freeKeys, paths, table, toDict
 
 GOOD = {
 	"specimen": {"radius": 0.02, "height": 0.08, "gradation": "sand.csv", "grains": 100},
@@ -180,7 +180,9 @@ def test_freeKeys():
 		"numerics.threads",
 		"output.vtkEvery",
 		"output.checkpointEvery",
+		"output.contacts",
 		"output.report",
+		*(f"lab.{name}" for name in ("file", "strain", "stress_ratio", "q", "volumetric_strain", "volumetric", "units")),
 	}
 
 
@@ -202,7 +204,7 @@ def test_resolvedRoundTrip(folder):
 	assert {"date", "hexmembrane", "commit", "yade", "python", "numpy", "threads"} <= set(text["made"])
 	assert text["made"]["yade"] and text["made"]["threads"] >= 1
 	keys = {row[0] for row in table(Config)}
-	assert keys == {f"{a}.{b}" for a, part in text.items() if isinstance(part, dict) and a != "made" for b in part} | {"title", "accuracy", "tier", "boundary", "stages"}
+	assert keys == set(paths({name: part for name, part in text.items() if name != "made"}))
 	assert toDict(configuration.load(folder / "resolved.yaml")) == toDict(made)
 	assert not list(folder.glob("*.part"))
 

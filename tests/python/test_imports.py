@@ -11,6 +11,7 @@ PACKAGE = pathlib.Path(__file__).parents[2] / "py" / "hexmembrane"
 ORDER = ("configuration", "scene", "measure", "output", "laboratory", "report", "run", "exchange")
 WITHOUT_YADE = (
 	"configuration.json_schema",
+	"configuration.lab",
 	"configuration.pfc",
 	"configuration.specimen",
 	"configuration.stages",
@@ -39,9 +40,11 @@ WITHOUT_YADE = (
 	"output.plots",
 	"laboratory.curve",
 	"laboratory.misfit",
+	"report.chains",
 	"report.command",
 	"report.curves",
 	"report.encode",
+	"report.laboratories",
 	"report.libraries",
 	"report.page",
 	"report.profiles",

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Laboratory curves: what is read, what is refused and with which words, how far a test is from one."""
 
+import copy
+
 import numpy
 import pytest
-from hexmembrane.configuration import ConfigError
+from hexmembrane import configuration
+from hexmembrane.configuration import Config, ConfigError
 from hexmembrane.laboratory import curve, misfit
 from hexmembrane.laboratory.curve import Series
+from tinyTest import TINY, configure
 
 DECLARED = {"file": "c.csv", "strain": "e [%]", "stress_ratio": "sr", "volumetric_strain": "v [%]", "volumetric": "compression"}
 STRAIN = numpy.linspace(0, 10, 21)
@@ -120,3 +124,45 @@ def test_ofTest():
 	table = {name: numpy.array(values) for name, values in {"axial_strain": [0, 0, 0.01, 0.009, 0.02], "q_cell": [0, 0, 1e5, 1e5, 2e5], "sigma3_target": [1e5] * 5, "volumetric_strain_volume": [0, 0, -0.001, 0, 0.001]}.items()}
 	found = misfit.ofTest(table)
 	assert found["stress_ratio"].value.tolist() == [1, 2, 3] and found["volumetric_strain"].strain.tolist() == [0, 0.01, 0.02]
+
+
+def test_theSectionLab(tmp_path):
+	"""Its file counts from the configuration's folder; what cannot be meant is refused."""
+	path = configure(tmp_path, lab={"file": "c.csv", "q": "q", "units": {"q": "kPa"}})
+	config = configuration.load(path)
+	assert config.lab.file == str((tmp_path / "c.csv").resolve()) and config.lab.units == {"q": "kPa"}
+	(tmp_path / "below").mkdir()
+	(tmp_path / "below" / "c.yaml").write_text("base: ../tiny.yaml\n")
+	assert configuration.load(tmp_path / "below" / "c.yaml").lab.file == config.lab.file
+	for changes, message in (
+		({"lab": {"q": "q"}}, "lab.q = 'q': is of no curve; fix: give lab.file"),
+		({"lab": {"file": "c.csv", "units": ["kPa"]}}, "lab.units = .*: is not a mapping; fix: "),
+		({"lab": {"file": "c.csv"}, "stages": [{"kind": "consolidation"}]}, "lab.file = 'c.csv': a list of stages has no single curve; fix: "),
+	):
+		with pytest.raises(ConfigError, match=message):
+			Config.of({**copy.deepcopy(TINY), **changes}, tmp_path)
+
+
+def test_aConfigurationsCurve(tmp_path):
+	"""Columns that are not named are those with the names of records.csv; nothing without a file."""
+	assert curve.ofKeys({"file": None, "strain": None}, PRESSURE) is None
+	write(tmp_path, header="axial_strain [%],stress_ratio,volumetric_strain [%]")
+	found = curve.ofKeys({"file": str(tmp_path / "c.csv"), "q": None}, PRESSURE)
+	assert set(found.series) == {"stress_ratio", "volumetric_strain"} and found.series["volumetric_strain"].value[-1] == pytest.approx(-0.03)
+	found = curve.ofKeys({"file": str(tmp_path / "c.csv"), "volumetric_strain": "volumetric_strain [%]", "volumetric": "compression"}, PRESSURE)
+	assert set(found.series) == {"volumetric_strain"} and found.series["volumetric_strain"].value[-1] == pytest.approx(0.03)
+	write(tmp_path)
+	with pytest.raises(ConfigError, match="lab.strain = None: is not given"):
+		curve.ofKeys({"file": str(tmp_path / "c.csv")}, PRESSURE)
+
+
+def test_ofRecords(tmp_path):
+	"""A test that is the curve itself is no distance from it; one without shear has no numbers."""
+	known = read(write(tmp_path))
+	strain = numpy.linspace(0, 0.1, 21)
+	table = {"stage": ["shear"] * 21, "axial_strain": strain, "q_cell": PRESSURE * (known.series["stress_ratio"].value - 1), "sigma3_target": numpy.full(21, PRESSURE)}
+	table["volumetric_strain_volume"] = known.series["volumetric_strain"].value
+	found = misfit.ofRecords(known, table, PRESSURE)
+	assert [str(one) for one in found][0] == "peak of sigma1/sigma3 3.727, laboratory's 3.727"
+	assert [one.test for one in found[-2:]] == pytest.approx([0, 0], abs=1e-12) and all(one.test == pytest.approx(one.laboratory) for one in found[:-2])
+	assert misfit.ofRecords(known, {**table, "stage": ["consolidation"] * 21}, PRESSURE) == []

@@ -141,7 +141,7 @@ def test_wrongValues(folder):
 	"key, value, message",
 	[
 		("format", 99, "format = 99: this version reads 2"),
-		("states_version", 1, "states_version = 1: this version reads 2"),
+		("states_version", 1, "states_version = 1: this version reads 3"),
 		("checkpoints.0.stage", "rest 1", r"checkpoints\[0\].stage = 'rest 1': is no label of a stage"),
 		("checkpoints.1.state", "gone.yade", r"checkpoints\[1\].state = 'gone.yade': is not one of the states"),
 		("checkpoints.1.records", None, r"checkpoints\[1\].records = None: is no JSON object"),

@@ -38,8 +38,11 @@ def test_everyKeyIsInIt(tmp_path):
 	assert faults(values) == []
 	properties = jsonSchema()["properties"]
 	for name, *_ in table(Config):
-		section, _, key = name.partition(".")
-		assert section in properties and (not key or key in properties[section]["anyOf"][0]["properties"]), name
+		at, *inner = name.split(".")
+		place = properties[at]
+		for at in inner:
+			place = place["anyOf"][0]["properties"][at]
+		assert place["description"], name
 
 
 @pytest.mark.parametrize(

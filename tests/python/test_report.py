@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import yaml
 from hexmembrane.output import records, vtk
-from hexmembrane.report import command, curves, encode, libraries, page, runs, spatial, terminal, verdict
+from hexmembrane.report import command, encode, libraries, page, profiles, runs, spatial, terminal, verdict
 from hexmembrane.report.runs import ReportError
 from tinyTest import configure
 
@@ -21,7 +21,7 @@ HARM = "</script><script>harmed=1</script><img src=x onerror=harmed=1> & \"'"
 CONFIG = {
 	"boundary": "membrane",
 	"specimen": {"seed": 1, "grains": 30, "gradation": "/somewhere/sand.csv"},
-	"consolidation": {"unbalanced": 1e-3, "tolerance": None},
+	"consolidation": {"pressure": 1e5, "unbalanced": 1e-3, "tolerance": None},
 	"shear": {"strain": 0.1, "pressureTolerance": 0.05},
 	"made": {"commit": "0" * 40, "yade": "2025.2.0", "budget": {"budget of a run": {"peak q": 0.1}, "scatter of packings": {"peak q": 0.02}}},
 }
@@ -52,7 +52,10 @@ def makeTest(folder, rows=11, frames=3, grains=30, seed=1, title="a test", last=
 		vtk.write(folder / "vtk" / f"grains-{k:04d}.vtp", grainsAt + moved, pointData=ofGrains)
 		ofSheet = {"group": np.full(sheet, 3), "pressure": np.full(sheet, 1e5), "normal_displacement": np.full(sheet, 1e-3 * k)}
 		vtk.write(folder / "vtk" / f"membrane-{k:04d}.vtp", sheetAt + jitter * random.normal(size=(sheet, 3)), triangles, ofSheet, {"hoop_tension": np.arange(sheet / 3)})
-	for name in ("grains", "membrane"):
+		ends = grainsAt[random.integers(0, grains, (3 * grains, 2))].astype(np.float32)
+		forces = random.exponential(size=3 * grains).astype(np.float32)
+		vtk.write(folder / "vtk" / f"contacts-{k:04d}.vtp", ends, np.arange(6 * grains).reshape(-1, 2), {"normal_force": np.repeat(forces, 2)})
+	for name in ("grains", "membrane", "contacts"):
 		vtk.series(folder / "vtk" / f"{name}.pvd", [(0.05 * k, f"{name}-{k:04d}.vtp") for k in range(frames)])
 	return folder
 
@@ -90,6 +93,29 @@ def test_whatIsGathered(tmp_path):
 	tension = decoded(next(one["values"] for one in scene["boundary"]["quantities"] if one["name"] == "hoop_tension"))
 	assert np.allclose(tension[0, :, 0], np.repeat(np.arange(4.0), 3), atol=1e-4)
 	assert len(run["profile"]["radius"]) == 3 and run["clouds"] is None
+
+
+def test_profileOfACoarseSheet():
+	"""Slices of the height without a row of the sheet are left out: no hole in its line."""
+	points = np.array([(0.02, 0, z) for z in (0.0, 0.05, 0.1)])
+	found = profiles.ofFrames([(points, None, {})], [0.0])
+	assert found["height"] == [[0, 50, 100]] and found["radius"] == [[20, 20, 20]]
+
+
+def test_forceChainsAreTheStrongestContacts(tmp_path):
+	folder = makeTest(tmp_path / "a")
+	points, lines, arrays, _ = vtk.read(folder / "vtk" / "contacts-0001.vtp")
+	forces = arrays["normal_force"][::2]
+	strongest = np.argsort(-forces)[:45]
+	one = page.gather([folder])["runs"][0]["scene"]["chains"][1]
+	assert one["all"] == 90 and one["mean"] == pytest.approx(forces.mean(), rel=1e-5)
+	assert np.allclose(decoded(one["force"])[0, :, 0], forces[strongest] / forces.mean(), atol=1e-4)
+	assert np.allclose(decoded(one["ends"])[0], points.reshape(-1, 6)[strongest], atol=1e-6)
+	without = makeTest(tmp_path / "b")
+	(without / "vtk" / "contacts.pvd").unlink()
+	(run,) = page.gather([without])["runs"]
+	assert "chains" not in run["scene"] and run["problems"] == []
+	assert spatial.bytesOf(runs.read(folder)) - spatial.bytesOf(runs.read(without)) == 2 * 3 * 7 * 45
 
 
 def states(run, scatter=None):
@@ -141,13 +167,26 @@ def test_seedsAreOneMean(tmp_path):
 
 
 def test_laboratory(tmp_path):
-	path = tmp_path / "lab.csv"
-	path.write_text("axial_strain [-],q [Pa]\n0,0\n0.01,1e5\n")
-	assert curves.laboratory(path) == {"name": "lab", "shear": {"x": [0, 1], "q": [0, 100]}}
-	for text in ("strain,q [Pa]\n0,0\n", "axial_strain [-],other\n0,0\n", "axial_strain [-],q [Pa]\n0,much\n"):
+	"""Of the command and of a test's own configuration: drawn once, compared with each test that it is for."""
+	path, other = tmp_path / "lab.csv", makeTest(tmp_path / "b", seed=2)
+	path.write_text("axial_strain [%],q [kPa],volumetric_strain [%]\n" + "".join(f"{strain},{50 * strain},\n" for strain in range(5)) + "5,,1\n6,,2\n7,,3\n8,,4\n9,,5\n")
+	folder = makeTest(tmp_path / "a", q_cell=1e5)
+	found = page.gather([folder, other], [path])
+	(drawn,) = found["laboratories"]
+	assert drawn["name"] == "lab at 100 kPa" and drawn["shear"]["x"] == list(range(10))
+	assert drawn["shear"]["q"] == [0, 50, 100, 150, 200, *[None] * 5] and drawn["shear"]["stress_ratio"][2] == pytest.approx(100 / (100 + 100 / 3), rel=1e-5)
+	assert drawn["shear"]["volumetric_strain_volume"] == [*[None] * 5, 1, 2, 3, 4, 5]
+	rows = {name: texts for name, *texts in found["runs"][0]["apart"][0]["rows"]}
+	assert rows["peak of sigma1/sigma3"] == ["3", "2"] and rows["distance along sigma1/sigma3"][1] == "0.7071" and len(found["runs"][1]["apart"]) == 1
+	config = yaml.safe_load((folder / "config.yaml").read_text())
+	for name, lab in (("own", {"file": str(path), "q": None}), ("lost", {"file": str(tmp_path / "none.csv")})):
+		(folder / "config.yaml").write_text(yaml.safe_dump({**config, "lab": lab}))
+		first, second = page.gather([folder, other])["runs"]
+		assert second["apart"] == [] and len(first["apart"]) == (name == "own") and ("cannot be read" in "".join(first["problems"])) == (name == "lost")
+	for text in ("strain,q [Pa]\n0,0\n", "axial_strain [-],other\n0,0\n", "axial_strain [-],q [Pa]\n0,much\n", "axial_strain [-],q [kPa]\n0,0\n0.01,5\n"):
 		path.write_text(text)
-		with pytest.raises(ReportError, match="--laboratory = .*lab.csv.*fix: "):
-			curves.laboratory(path)
+		with pytest.raises(ReportError, match="--laboratory.* = .*fix: "):
+			page.gather([folder], [path])
 
 
 class Elements(html.parser.HTMLParser):
@@ -207,6 +246,8 @@ def harm(folder, what):
 		(folder / "config.yaml").write_bytes(b"\xff\x00: [")
 	elif what == "frame of bytes":
 		(folder / "vtk" / "grains-0001.vtp").write_bytes(b"no XML")
+	elif what == "contacts of bytes":
+		(folder / "vtk" / "contacts-0001.vtp").write_bytes(b"no XML")
 	elif what == "no frame":
 		(folder / "vtk" / "membrane-0001.vtp").unlink()
 	elif what == "fields of bytes":
@@ -225,6 +266,7 @@ def harm(folder, what):
 		"no configuration",
 		"configuration of bytes",
 		"frame of bytes",
+		"contacts of bytes",
 		"no frame",
 		"fields of bytes",
 		"profile of bytes",
@@ -272,6 +314,7 @@ def test_command(tmp_path, capsys, monkeypatch):
 	assert command.main([str(tmp_path / "none")]) == 1 and "there is no such folder; fix: " in capsys.readouterr().err
 	assert command.main([str(tmp_path)]) == 1 and "holds no test and no study; fix: " in capsys.readouterr().err
 	assert command.main([str(folder), "--out", str(tmp_path / "no" / "a.html")]) == 1 and "cannot be written" in capsys.readouterr().err
+	assert command.main([str(tmp_path / "later"), "--watch", "7"]) == 130 and "waiting for a test in " in capsys.readouterr().out
 	monkeypatch.setattr(libraries, "FOLDERS", (tmp_path,))
 	assert command.main([str(folder)]) == 1 and "fix: apt-get install node-d3" in capsys.readouterr().err
 
@@ -289,11 +332,16 @@ def test_aStudyIsOpenedByItsPlan(tmp_path):
 
 def test_aTestEndsWithItsReport(tmp_path, runHere, monkeypatch):
 	"""And goes well without the page's libraries; resumed at its end with them it writes the page."""
-	config, out = configure(tmp_path, shear={"strain": 0.002}, output={"records": 4, "report": True}), tmp_path / "out"
+	config, out, lab = configure(tmp_path, shear={"strain": 0.002}, output={"records": 4, "report": True}), tmp_path / "out", tmp_path / "sand test.csv"
+	lab.write_text("axial_strain [%],q [kPa]\n0,0\n0.1,50\n0.5,80\n1,100\n2,90\n")
 	with monkeypatch.context() as without:
 		without.setattr(libraries, "FOLDERS", (tmp_path,))
-		code, said, _ = runHere(config, "--out", out)
+		code, said, _ = runHere(config, "--out", out, "--lab", lab)
+	assert "laboratory sand test: peak of sigma1/sigma3 " in said
 	assert code == 0 and not (out / "report.html").exists() and "no report.html: report.node-d3" in said
 	code, said, _ = runHere(config, "--out", out, "--resume")
 	assert code == 0 and (out / "report.html").is_file() and "report.html" in said and not (out / "report.html.part").exists()
 	assert page.gather([out])["runs"][0]["problems"] == []
+	lab.write_text("axial_strain [%],q [kPa]\n0,0\n")
+	code, _, errors = runHere(config, "--out", tmp_path / "other", "--lab", lab)
+	assert code == 2 and "error: lab.q = " in errors and "is too short: it has 1 values; fix: " in errors and not (tmp_path / "other").exists()

@@ -2,6 +2,7 @@
 """A test of several stages: its plan, every kind of stage as a user runs it, killed in the middle of an unloading and resumed."""
 
 import copy
+import shutil
 import signal
 import subprocess
 import time
@@ -11,6 +12,7 @@ import pytest
 from hexmembrane.configuration import Config, ConfigError, toDict
 from hexmembrane.configuration.stages import plan, span
 from hexmembrane.output import records
+from hexmembrane.report import page, runs
 from hexmembrane.run import estimate
 from tinyTest import TINY, command, configure, environment, runOutside
 
@@ -144,6 +146,22 @@ def test_everyStage(whole):
 		assert text in said, text
 	regions = (out / "regions.csv").read_text().splitlines()
 	assert {line.split(",")[0] for line in regions[1:]} <= {str(int(step)) for step in table["step"]} and len(regions) > 10
+
+
+def test_itsPage(whole, tmp_path):
+	"""The page draws all stages over strain and over time, and its slider goes by time: a strain is passed several times."""
+	(run,) = page.gather([whole[0]])["runs"]
+	assert run["problems"] == [] and run["state"].startswith("through 8 stages, at ")
+	table = records.read(whole[0] / "records.csv")
+	rows = sum(not stage.startswith("consolidation") for stage in table["stage"])
+	over = run["curves"]
+	assert len(over["stages"]["q"]) == rows < len(over["time"]["q"]) == len(table["step"]) == len(run["stages"]["strain"])
+	assert max(over["stages"]["x"]) == pytest.approx(0.6, abs=0.02) and min(numpy.diff(over["stages"]["x"])) < 0 < min(numpy.diff(over["time"]["x"]))
+	assert run["scene"]["strains"] == sorted(run["scene"]["strains"]) and run["scene"]["strains"][-1] == pytest.approx(table["time"][rows + run["stages"]["stage"].index("shear") - 1], rel=1e-5)
+	verdict = {check["name"]: check for check in run["verdict"]}
+	assert verdict["at its end"]["state"] == "pass" and verdict["grains inside"]["number"] == f"all at {rows} rows"
+	shutil.copytree(whole[0], tmp_path / "half", ignore=shutil.ignore_patterns("consolidation-2.yade.gz"))
+	assert runs.read(tmp_path / "half").state().startswith("stage consolidation-2, 8 of 8, at ") and not runs.read(tmp_path / "half").ended
 
 
 def test_killedInTheUnloadingAndResumed(whole, tmp_path):

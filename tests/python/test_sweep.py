@@ -147,6 +147,7 @@ def test_accuracyIsSettledBeforeAnythingIsNamed(tmp_path):
 		({"seeds": 0}, "neither a number of seeds"),
 		({"seeds": [1, 1]}, "neither a number of seeds"),
 		({"attempts": 0}, "whole number from 1"),
+		({"report": 1}, "study.report = 1: is neither true nor false"),
 		({"base": 3}, "is no configuration"),
 	],
 )
@@ -297,7 +298,7 @@ def test_study(tmp_path, monkeypatch, capsys):
 	assert code == 1, said
 	assert [row["status"].partition(":")[0] for row in rows] == ["failed", "done"]
 	assert rows[0]["status"].startswith("failed: consolidation: consolidation.maxSteps = 200") and float(rows[1]["peak_q [Pa]"]) > 1e4
-	assert {path.name for path in whole.iterdir()} >= {results.MEANS, results.RECORDS, "study.png", archive.ARCHIVE}
+	assert {path.name for path in whole.iterdir()} >= {results.MEANS, results.RECORDS, "study.png", archive.ARCHIVE, command.PAGE}
 	stamp = (whole / results.PROVENANCE).stat().st_mtime_ns
 	monkeypatch.setattr(command.signal, "signal", lambda *_: None)
 	assert command.main([str(path), "--out", str(whole)]) == 1

@@ -144,6 +144,9 @@ def test_vtkFrames(whole):
 	# what is on the membrane, not what was asked for: the loops bring the transmitted pressure to that
 	applied = records.read(out / "records.csv")["sigma3_applied"][-1]
 	assert set(data["pressure"][data["group"] == 3]) == {applied} and set(data["pressure"][data["group"] == 1]) == {0.0}
+	ends, lines, data, cells = vtk.read(out / "vtk" / "contacts-0002.vtp")
+	assert len(ends) == 2 * len(lines) > 800 and set(cells["kind"]) == {0, 1, 2, 3} and data["normal_force"].min() >= 0 and cells["shear_force"].max() > 0
+	assert (out / "vtk" / "contacts.pvd").read_text().count("contacts-") == 3
 	# No grain is outside the membrane.
 	assert numpy.hypot(*points[:, :2].T).max() < numpy.hypot(*x[:, :2].T).max()
 

@@ -27,6 +27,14 @@ def test_surfaceReadsBack(tmp_path):
 	assert (pointData["group"] == numpy.arange(7)).all() and (cellData["side"] == numpy.arange(4) / 3).all()
 
 
+def test_linesReadBack(tmp_path):
+	lines = numpy.array([(0, 1), (2, 3), (4, 5)])
+	vtk.write(tmp_path / "c.vtp", POINTS.astype(numpy.float32), lines, {"normal_force": numpy.arange(7.0)}, {"kind": numpy.arange(3, dtype=numpy.uint8)})
+	points, cells, pointData, cellData = vtk.read(tmp_path / "c.vtp")
+	assert points.dtype == numpy.float32 and abs(points - POINTS).max() < 1e-6 and (cells == lines).all()
+	assert (pointData["normal_force"] == numpy.arange(7)).all() and (cellData["kind"] == numpy.arange(3)).all()
+
+
 def test_wrongLength(tmp_path):
 	with pytest.raises(ValueError, match=r"points\['radius'\] = 3 values: there are 7"):
 		vtk.write(tmp_path / "g.vtp", POINTS, pointData={"radius": [1.0, 2.0, 3.0]})

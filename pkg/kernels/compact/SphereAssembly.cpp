@@ -70,15 +70,22 @@ bool sameSprings(std::vector<ContactMaterial> now, const std::vector<ContactMate
 
 } // namespace
 
-void SphereAssembly::setMaterials(const std::vector<ContactMaterial>& table)
+void SphereAssembly::setMaterials(const std::vector<ContactMaterial>& table, const std::vector<OwnPair>& own)
 {
-	if (table == materials) return;
+	if (table == materials && own == ownPairs) return;
 	if (table.size() > 255) reject("materials", double(table.size()), "too many", "255 materials at most: bodies with the same parameters can share one");
-	const bool listsStay = sameSprings(table, materials);
+	const bool listsStay = own == ownPairs && sameSprings(table, materials);
 	materials = table;
+	ownPairs = own;
+	pairs.clear();
 	kinds.clear();
 	for (const ContactMaterial& a : table)
-		for (const ContactMaterial& b : table) kinds.push_back(kindOf(a, b));
+		for (const ContactMaterial& b : table) pairs.push_back({a, b});
+	for (const OwnPair& pair : own) {
+		pairs[kindOfPair(pair.a, pair.b)] = paired(table[pair.a], table[pair.b], pair.own);
+		pairs[kindOfPair(pair.b, pair.a)] = paired(table[pair.b], table[pair.a], pair.own);
+	}
+	for (const MaterialPair& pair : pairs) kinds.push_back(kindOf(pair.a, pair.b));
 	if (listed.empty()) return;
 	if (listsStay) {
 		contacts.setKinds(kinds);

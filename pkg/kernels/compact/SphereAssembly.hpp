@@ -32,12 +32,27 @@ public:
 	/// \param skin (m), > 0
 	void setSkin(double skin);
 	double skin() const { return gap; }
-	/// Parameters of all materials; contacts follow at once. A membrane particle that touches a grain without friction needs no memory.
-	void setMaterials(const std::vector<ContactMaterial>& table);
+	/// What contacts of two materials have of their own; a and b are indices of the table.
+	struct OwnPair {
+		int a, b;
+		PairProperties own;
+		bool operator==(const OwnPair& o) const { return a == o.a && b == o.b && own == o.own; }
+	};
+	/// Parameters of all materials, and of the pairs that have their own; contacts follow at once. A membrane particle that touches a grain without friction
+	/// needs no memory.
+	void setMaterials(const std::vector<ContactMaterial>& table, const std::vector<OwnPair>& ownPairs = {});
 	const ContactMaterial& materialOf(int index) const { return materials[index]; }
 	/// Law of a contact of two spheres, or of a sphere with boundary b, without a bond.
-	ContactLaw lawOf(int i, int j) const { return sphereLaw(materials[material[i]], materials[material[j]], places[i].radius, places[j].radius); }
-	ContactLaw boundaryLawOf(int b, int i) const { return boundaryLaw(materials[boundaries[b].material], materials[material[i]], places[i].radius); }
+	ContactLaw lawOf(int i, int j) const
+	{
+		const MaterialPair& pair = pairs[kindOfPair(material[i], material[j])];
+		return sphereLaw(pair.a, pair.b, places[i].radius, places[j].radius);
+	}
+	ContactLaw boundaryLawOf(int b, int i) const
+	{
+		const MaterialPair& pair = pairs[kindOfPair(boundaries[b].material, material[i])];
+		return boundaryLaw(pair.a, pair.b, places[i].radius);
+	}
 
 	/// Whether a contact of these two has neither friction nor rolling resistance.
 	bool isSmooth(int i, int j) const { return normalOnly(kinds[kindOfPair(material[i], material[j])]); }
@@ -134,12 +149,13 @@ private:
 	int kindOfPair(int a, int b) const { return a * int(materials.size()) + b; }
 	SpringsOfKind springsOf(int i, int j) const
 	{
-		return {sphereSprings(materials[material[i]], materials[material[j]], places[i].radius, places[j].radius),
-		        kindOfPair(material[i], material[j])};
+		const int kind = kindOfPair(material[i], material[j]);
+		return {sphereSprings(pairs[kind].a, pairs[kind].b, places[i].radius, places[j].radius), kind};
 	}
 	SpringsOfKind springsOf(const Boundary& boundary, int i) const
 	{
-		return {boundarySprings(materials[boundary.material], materials[material[i]], places[i].radius), kindOfPair(boundary.material, material[i])};
+		const int kind = kindOfPair(boundary.material, material[i]);
+		return {boundarySprings(pairs[kind].a, pairs[kind].b, places[i].radius), kind};
 	}
 	void findPairs(NearPairs& general, std::vector<FrictionlessContacts::Pair>& frictionless) const;
 	ThreadPartition runs; ///< of the present lists; none: to be made
@@ -151,7 +167,9 @@ private:
 	void startTravel();
 	long made = 0;
 	std::vector<ContactMaterial> materials;
-	std::vector<PairKind<double>> kinds; ///< of every pair of materials
+	std::vector<OwnPair> ownPairs;
+	std::vector<MaterialPair> pairs;     ///< of every pair of materials, as they act in its contacts
+	std::vector<PairKind<double>> kinds; ///< of the same pairs
 };
 
 } // namespace hexmembrane

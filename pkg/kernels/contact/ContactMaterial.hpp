@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace hexmembrane {
 
@@ -27,6 +28,42 @@ struct ContactMaterial {
 		       rollingFriction == o.rollingFriction;
 	}
 };
+
+/// What contacts of two materials have of their own, as PFC's contact model assignment table gives it to a pair of groups; NaN: what the two bodies bring.
+/// Stiffness is that of the contact itself, kn and ks or emod and kratio. Nothing is checked here.
+struct PairProperties {
+	double kn = std::numeric_limits<double>::quiet_NaN();              ///< normal stiffness of the contact (N/m)
+	double ks = std::numeric_limits<double>::quiet_NaN();              ///< shear stiffness of it (N/m)
+	double emod = std::numeric_limits<double>::quiet_NaN();            ///< PFC's effective modulus (Pa)
+	double kratio = std::numeric_limits<double>::quiet_NaN();          ///< kn/ks
+	double friction = std::numeric_limits<double>::quiet_NaN();        ///< coefficient mu
+	double rollingFriction = std::numeric_limits<double>::quiet_NaN(); ///< coefficient mu_r
+	static constexpr int numbers = 6;
+
+	bool operator==(const PairProperties& o) const
+	{
+		const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+		return same(kn, o.kn) && same(ks, o.ks) && same(emod, o.emod) && same(kratio, o.kratio) && same(friction, o.friction) &&
+		       same(rollingFriction, o.rollingFriction);
+	}
+};
+
+/// Two materials as they act in contacts with each other.
+struct MaterialPair {
+	ContactMaterial a, b;
+};
+
+/// The two with what their contacts have of their own: each brings what gives just that by the rules below, twice a direct stiffness for its spring in series.
+inline MaterialPair paired(ContactMaterial a, ContactMaterial b, const PairProperties& own)
+{
+	for (ContactMaterial* one : {&a, &b}) {
+		if (!std::isnan(own.kn) || !std::isnan(own.emod))
+			std::tie(one->kn, one->ks, one->emod, one->kratio) = std::make_tuple(2 * own.kn, 2 * own.ks, own.emod, own.kratio);
+		if (!std::isnan(own.friction)) one->friction = own.friction;
+		if (!std::isnan(own.rollingFriction)) one->rollingFriction = own.rollingFriction;
+	}
+	return {a, b};
+}
 
 /// Parameters of a pair of materials that do not depend on the bodies' sizes: they have few values in a scene.
 template <class V>

@@ -49,7 +49,8 @@ std::vector<std::shared_ptr<const BoundaryShape>> GrainAssembly::shapes() const
 	// solids that no grain passes
 	const double thick = cylinderRadius, wide = 2 * cylinderRadius;
 	const Vec3 axis = Vec3::UnitZ();
-	return {boundaryShape(PlatenBoundary{{-thick * axis, axis, wide, thick}}), boundaryShape(PlatenBoundary{{(cylinderHeight + thick) * axis, axis, wide, thick}}),
+	return {boundaryShape(PlatenBoundary{{-thick * axis, axis, wide, thick}}),
+	        boundaryShape(PlatenBoundary{{(cylinderHeight + thick) * axis, axis, wide, thick}}),
 	        boundaryShape(CylinderBoundary{0.5 * cylinderHeight * axis, cylinderRadius, cylinderHeight})};
 }
 

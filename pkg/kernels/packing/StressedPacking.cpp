@@ -18,6 +18,9 @@ constexpr double looser = 0.08, densestStart = 0.45, loosest = 0.65, smoothStart
 constexpr double inertialNumber = 2e-3, frictionLoss = 0.1;
 /// Friction below this is none.
 constexpr double noFriction = 1e-4;
+/// Grains without friction are too stiff when they grow by less than this in so many steps.
+constexpr double leastGrowth = 2e-5;
+constexpr long stallSteps = 1000;
 /// What counts as the wanted stress and as equilibrium, for this many looks in a row.
 constexpr double stressTolerance = 0.03, equilibrium = 1e-3;
 constexpr int lookEvery = 100, looks = 3;
@@ -60,8 +63,12 @@ public:
 	/// Grows to size 1, then waits there until the stress is not above the wanted one. \returns false when even smooth grains are too stiff on the way
 	bool compress()
 	{
+		double before = 0;
 		while (grains.factor() < 1 || over() > 1 + stressTolerance) {
-			if (friction < noFriction) return false;
+			if (friction < noFriction && made % stallSteps == 0) {
+				if (grains.factor() - before < leastGrowth) return false;
+				before = grains.factor();
+			}
 			grains.step(std::min(growth * std::clamp(1 - over() / 2, 0.0, 1.0), 1 / grains.factor() - 1));
 			lowerFriction();
 			count();

@@ -10,6 +10,8 @@ import os
 from typing import List, Optional
 
 from hexmembrane.configuration import balls
+from hexmembrane.configuration.contacts import Contacts
+from hexmembrane.configuration.lab import Lab
 from hexmembrane.configuration.measure import Measure
 from hexmembrane.configuration.schema import REQUIRED, ConfigError, build, key, paths, section, shared, toDict
 from hexmembrane.configuration.specimen import PATHS, Specimen
@@ -288,6 +290,7 @@ class Output:
 	records: int = key(120, "rows of records.csv in shear", "", low=1, high=1000000)
 	consolidationSteps: int = key(500, "steps between rows in consolidation", "", low=1, high=10**9)
 	vtkEvery: int = key(20, "rows between VTK frames in shear, first and last state always; 0: no VTK", "", low=0, high=10**9, free=True)
+	contacts: bool = key(True, "the soil's contacts with their forces in each VTK frame: lines for ParaView, force chains in report.html", free=True)
 	checkpointEvery: int = key(20, "rows between checkpoints, start of the consolidation and end of each stage always; 0: only there", "", low=0, high=10**9, free=True)
 	energy: bool = key(True, "track energies and record their balance")
 	report: bool = key(True, "write report.html, a page with curves, scene and verdict, at the end of shear (examples/report.md)", free=True)
@@ -327,11 +330,13 @@ class Config:
 	membrane: Membrane = section(Membrane, "the flexible membrane; particleRadius and placement also say the packing's radius")
 	wall: Wall = section(Wall, "the rigid wall, used with boundary: wall")
 	platens: Platens = section(Platens, "the end platens")
+	contacts: Contacts = section(Contacts, "contacts of a pair of groups with a stiffness or friction of their own")
 	consolidation: Consolidation = section(Consolidation, "isotropic consolidation")
 	shear: Shear = section(Shear, "shearing")
 	numerics: Numerics = section(Numerics, "time step, damping, threads")
 	output: Output = section(Output, "records, VTK, checkpoints")
 	measure: Measure = section(Measure, "measurement inside the specimen in shear")
+	lab: Lab = section(Lab, "a laboratory's curve, drawn under the test's")
 
 	@classmethod
 	def of(cls, values, folder="."):
@@ -352,10 +357,19 @@ class Config:
 				if not os.path.isfile(path):
 					raise ConfigError(f"specimen.{name}", path, "there is no such file", "correct the path")
 				setattr(config.specimen, name, path)
+		config._takeLab(folder)
 		config._takeSizeOfBalls()
 		checkPlan(config)
 		config.measure.checkWith(config.specimen, config.shear)
 		return config
+
+	def _takeLab(self, folder):
+		"""The curve is read when a test begins or ends: a test whose curve has gone can still be resumed."""
+		if self.lab.file is None:
+			return
+		if self.stages is not None:
+			raise ConfigError("lab.file", self.lab.file, "a list of stages has no single curve", "leave out lab or stages")
+		self.lab.file = os.path.realpath(os.path.join(folder, os.path.expanduser(self.lab.file)))
 
 	def _takeSizeOfBalls(self):
 		"""A specimen of balls that says no radius or height has those of the cylinder round them."""

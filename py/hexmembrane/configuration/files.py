@@ -77,10 +77,10 @@ def _layers(path, above):
 	below, folder = _layers(base, (*above, path.resolve()))
 	if not isinstance(below, dict):
 		raise ConfigError("base", str(base), "is not a mapping of keys", "write 'key: value' lines in it")
-	specimen = below.get("specimen")
-	if isinstance(specimen, dict):
-		paths = {name: os.path.join(folder, specimen[name]) for name in PATHS if isinstance(specimen.get(name), str)}
-		below = merged(below, {"specimen": {name: os.path.abspath(os.path.expanduser(value)) for name, value in paths.items()}})
+	for section, names in (("specimen", PATHS), ("lab", ("file",))):
+		if isinstance(keys := below.get(section), dict):
+			paths = {name: os.path.join(folder, keys[name]) for name in names if isinstance(keys.get(name), str)}
+			below = merged(below, {section: {name: os.path.abspath(os.path.expanduser(value)) for name, value in paths.items()}})
 	return merged(below, changes), path.parent
 
 

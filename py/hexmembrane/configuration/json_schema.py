@@ -48,6 +48,8 @@ def _type(annotation, spec):
 		return _object(annotation)
 	if typing.get_origin(annotation) is list:
 		return {"type": "array", "items": _type(arguments[0], spec)}
+	if typing.get_origin(annotation) is dict:
+		return {"type": "object", "additionalProperties": _type(arguments[1], spec)}
 	if annotation is bool:
 		return {"type": "boolean"}
 	if annotation in (int, float):

@@ -7,15 +7,15 @@ _DASHPOT = "contacts have no dashpots here; numerics.damping is PFC's local damp
 
 #: PFC's name -> the key here by section, '' for every other section.
 NAMES = {
-	"fric": {"specimen": "specimen.friction", "platens": "platens.friction", "wall": "wall.friction", "membrane": "nothing: the membrane has no friction with the soil", "": "friction"},
-	"rr_fric": {"specimen": "specimen.rollingFriction", "": "specimen.rollingFriction; platens, wall and membrane have none"},
+	"fric": {"specimen": "specimen.friction", "platens": "platens.friction", "wall": "wall.friction", "membrane": "contacts.grainMembrane.friction; without it the membrane has no friction with the soil", "": "friction"},
+	"rr_fric": {"contacts": "rollingFriction", "specimen": "specimen.rollingFriction", "": "specimen.rollingFriction; platens, wall and membrane have none, contacts.grainPlaten.rollingFriction gives their contacts one"},
 	"damp": {"": "numerics.damping"},
 	"density": {"": "density, in specimen or membrane"},
 	"radius": {"membrane": "membrane.particleRadius", "": "specimen.radius for the specimen; sizes of grains are specimen.radiusRange, radiusMean, radiusBins or gradation"},
-	"kn": {"membrane": "membrane.contactKn towards the soil; a bond of the sheet has kn = young thickness/(sqrt(3) (1 - poisson))", "": "specimen.kn, platens.kn or wall.kn"},
+	"kn": {"membrane": "membrane.contactKn towards the soil; a bond of the sheet has kn = young thickness/(sqrt(3) (1 - poisson))", "": "specimen.kn, platens.kn or wall.kn; contacts.grainPlaten.kn and such for a pair of groups"},
 	"ks": {
 		"membrane": "membrane.contactKs towards the soil; a bond of the sheet has ks = kn (1 - 3 poisson)/(1 + poisson)",
-		"": "specimen.ks, platens.ks or wall.ks",
+		"": "specimen.ks, platens.ks or wall.ks; contacts.grainPlaten.ks and such for a pair of groups",
 	},
 	"emod": {"membrane": "membrane.contactKn and contactKs; without them the membrane has the grains' stiffness", "": "specimen.emod, platens.emod or wall.emod"},
 	"kratio": {"membrane": "membrane.contactKn and contactKs; without them the membrane has the grains' stiffness", "": "specimen.kratio, platens.kratio or wall.kratio"},
@@ -33,5 +33,5 @@ NAMES = {
 
 def named(name, section):
 	"""What PFC's property ``name``, written in a section, is called here; '' when PFC has none of that name."""
-	places = NAMES.get(str(name).replace("-", "_"), {})
+	places, section = NAMES.get(str(name).replace("-", "_"), {}), section.partition(".")[0]
 	return places.get(section, places.get("", ""))

@@ -187,6 +187,10 @@ def _value(path, value, annotation, spec):
 		if not isinstance(value, (list, tuple)):
 			raise ConfigError(path, value, "is not a list", "write [first, second, ...]")
 		return [_value(f"{path}[{i}]", item, typing.get_args(kind)[0], spec) for i, item in enumerate(value)]
+	if typing.get_origin(kind) is dict:
+		if not isinstance(value, dict):
+			raise ConfigError(path, value, "is not a mapping", "write {name: value, ...}")
+		return {plainText(path, str(name), spec.longest): _value(f"{path}.{name}", item, typing.get_args(kind)[1], spec) for name, item in value.items()}
 	if kind in (int, float):
 		return _number(path, value, kind, spec)
 	if kind is bool:
@@ -274,6 +278,10 @@ def freeKeys(cls, path=""):
 	return paths
 
 
+#: A key's type in words.
+_WORDS = {float: "number", int: "whole number", bool: "true/false", str: "text"}
+
+
 def table(cls, path=""):
 	"""Rows (key path, type, unit, default, range, doc) of every key in ``cls`` and its sections."""
 	hints = typing.get_type_hints(cls)
@@ -285,7 +293,7 @@ def table(cls, path=""):
 			continue
 		spec = field.metadata["key"]
 		kind, optional = _bare(hints[field.name])
-		kind = "list of stages" if _entry(hints[field.name]) else {float: "number", int: "whole number", bool: "true/false", str: "text"}.get(kind, "list of numbers")
+		kind = "list of stages" if _entry(hints[field.name]) else _WORDS.get(kind) or ("mapping" if typing.get_origin(kind) is dict else "list of numbers")
 		default = "none" if field.default is None else str(field.default).lower() if kind == "true/false" else str(field.default)
 		if isinstance(field.default, float):
 			default = f"{field.default:g}"

@@ -10,12 +10,15 @@ from typing import List, Optional
 
 from hexmembrane.configuration.schema import REQUIRED, ConfigError, key
 
-CONSOLIDATION, SHEAR, UNLOADING, HOLD, PRESSURE, CYCLES = KINDS = ("consolidation", "shear", "unloading", "hold", "pressure", "cycles")
+CONSOLIDATION, MEMBRANE, SHEAR, UNLOADING, HOLD, PRESSURE, CYCLES = KINDS = ("consolidation", "membrane", "shear", "unloading", "hold", "pressure", "cycles")
+#: Kinds of stages until rest at the confining pressure, after which strains count anew.
+ISOTROPIC = (CONSOLIDATION, MEMBRANE)
 _TURNING = ("strain", "q")
 _STRAINING = (*_TURNING, "velocity", "velocities", "records", "strainStep")
 #: Keys that a kind of stage has.
 _KEYS = {
 	CONSOLIDATION: ("pressure", "time"),
+	MEMBRANE: ("time",),
 	SHEAR: _STRAINING,
 	UNLOADING: _STRAINING,
 	HOLD: ("time", "records"),
@@ -34,7 +37,7 @@ class Stage:
 
 	kind: str = key(
 		REQUIRED,
-		"consolidation: isotropic, to a pressure, until rest; shear: platens approach; unloading: they part; hold: they stand; pressure: they stand while the confining "
+		"consolidation: isotropic, to a pressure, until rest; membrane: the rigid wall goes and the membrane comes in its place, at the same pressure, until rest; shear: platens approach; unloading: they part; hold: they stand; pressure: they stand while the confining "
 		"pressure changes; cycles: unloading and shear in turn",
 		"",
 		choices=KINDS,
@@ -52,7 +55,11 @@ class Stage:
 		None, "[bottom, top], the speed of each platen, towards each other in shear and apart in unloading; instead of velocity and shear.moving", "m/s", low=-10, high=10
 	)
 	time: Optional[float] = key(
-		None, "how long the platens are held; over which the pressure changes smoothly, none: 30 d sqrt(rho/pressure)", "s", low=0, openLow=True
+		None,
+		"how long the platens are held; over which the pressure changes smoothly, or comes onto the membrane, none: 30 d sqrt(rho/pressure)",
+		"s",
+		low=0,
+		openLow=True,
 	)
 	records: Optional[int] = key(None, "rows to the strain or in the time; none: output.records, in hold and pressure 10", "", low=1, high=1000000)
 	strainStep: Optional[float] = key(None, "axial strain between rows on the way to q; none: a tenth of shear.strain/output.records", "", low=0, high=0.1, openLow=True)
@@ -122,6 +129,8 @@ class Planned:
 
 	def describe(self):
 		"""The stage in words."""
+		if self.kind == MEMBRANE:
+			return f"round the specimen instead of the wall, at {1e-3 * self.pressure:g} kPa, until rest"
 		if not self.straining:
 			change = f"from {1e-3 * self.before:g} to {1e-3 * self.pressure:g} kPa" if self.pressure != self.before else f"at {1e-3 * self.pressure:g} kPa"
 			return change + (f" in {self.time:g} s" if self.time else "") + (f", {self.records} rows" if self.records else ", until rest")
@@ -151,7 +160,39 @@ def plan(config):
 		counts[entry.kind] = counts.get(entry.kind, 0) + 1
 		label = entry.kind if counts[entry.kind] == 1 else f"{entry.kind}-{counts[entry.kind]}"
 		made.append(_planned(config, path, entry, label, made))
+	_requirePlaceOfMembrane(config, made)
 	return made
+
+
+def _requirePlaceOfMembrane(config, stages):
+	""":raises ConfigError: the membrane comes where there is no wall, or at another time than between consolidation and shear."""
+	at = next((k for k, stage in enumerate(stages) if stage.kind == MEMBRANE), None)
+	if at is None:
+		return
+	if config.boundary != "wall":
+		raise ConfigError(f"{stages[at].path}.kind", MEMBRANE, f"there is no wall to put the membrane in the place of, boundary is {config.boundary}", "boundary: wall")
+	if config.membrane.placement != "outside":
+		raise ConfigError("membrane.placement", config.membrane.placement, "the membrane comes onto the grains where the wall was", "placement: outside")
+	again = [stage for stage in stages if stage.kind == MEMBRANE][1:]
+	if again or any(stage.chain for stage in stages[:at]):
+		stage = again[0] if again else stages[at]
+		raise ConfigError(f"{stage.path}.kind", MEMBRANE, "the membrane comes once, and before the platens shear", "one '- {kind: membrane}' after a consolidation")
+
+
+def boundaries(config):
+	"""Keywords of the lateral boundaries that a test has, one after the other."""
+	changed = any(stage.kind == MEMBRANE for stage in config.stages or ())
+	return ("wall", "membrane") if changed else (config.boundary,)
+
+
+def boundariesIn(config, label):
+	"""Those that the checkpoints of a stage may have: of the one that puts the membrane in the wall's place, either."""
+	stages = plan(config)
+	at = next((k for k, stage in enumerate(stages) if stage.kind == MEMBRANE), None)
+	if at is None:
+		return boundaries(config)
+	now = next((k for k, stage in enumerate(stages) if stage.label == label), -1)
+	return boundaries(config)[slice(0, 1) if now < at else slice(1, 2) if now > at else slice(None)]
 
 
 def _singles(path, entry):
@@ -169,6 +210,8 @@ def _planned(config, path, entry, label, before):
 	if entry.kind == CONSOLIDATION:
 		pressure = config.consolidation.pressure if entry.pressure is None else entry.pressure
 		return Planned(label, entry.kind, pressure, now, time=entry.time or config.consolidation.rampTime, path=path)
+	if entry.kind == MEMBRANE:
+		return Planned(label, entry.kind, now, now, time=entry.time, path=path)
 	chain = (*last.chain, label)
 	reached = [stage.strain for stage in before if stage.label in chain and stage.strain is not None]
 	common = {"before": now, "chain": chain, "farthest": max(reached, default=-1.0), "path": path}
@@ -229,6 +272,6 @@ def checkPlan(config):
 	if (largest := largestStrain(stages)) > 0:
 		config.shear.strain = largest if "shear.strain" not in config.given else max(largest, config.shear.strain)
 	kinds = [stage.kind for stage in stages]
-	chains = sum(kind != CONSOLIDATION and before == CONSOLIDATION for before, kind in zip(kinds, kinds[1:]))
+	chains = sum(kind not in ISOTROPIC and before in ISOTROPIC for before, kind in zip(kinds, kinds[1:]))
 	if chains > 1 and (config.measure.local or config.measure.regions or config.measure.slices):
 		raise ConfigError("stages", len(stages), "a consolidation follows a shear, and measure counts from one of them", "leave measure out, or run two tests with --from")

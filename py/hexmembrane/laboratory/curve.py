@@ -24,6 +24,13 @@ KEYS = {
 }
 #: Quantities that a curve may have.
 QUANTITIES = ("stress_ratio", "volumetric_strain")
+#: Key of a declaration -> headers, without their units, that are taken where a configuration's ``lab`` names none; signs are those of records.csv.
+NAMES = {
+	"strain": ("axial_strain",),
+	"stress_ratio": ("stress_ratio",),
+	"q": ("q", "q_cell"),
+	"volumetric_strain": ("volumetric_strain", "volumetric_strain_volume"),
+}
 _UNITS = {"%": 0.01, "-": 1.0, "Pa": 1.0, "kPa": 1e3, "MPa": 1e6}
 _STRAIN, _STRESS = ("%", "-"), ("Pa", "kPa", "MPa")
 #: Fewest values of a quantity; widest gap between two of them as share of its range of strain.
@@ -88,6 +95,26 @@ def read(declared, folder, pressure, name="lab"):
 			curve.series["stress_ratio"] = _stressRatio(series, key, pressure, where)
 		curve.warnings += _gaps(series, where)
 	return curve
+
+
+def ofKeys(keys, pressure, name="lab"):
+	"""The :class:`Curve` of a configuration's section ``lab``, a dict in which a key may be None; None without a file. Columns that are not named are those of NAMES.
+
+	:raises ConfigError: as :func:`read`.
+	"""
+	declared = {key: value for key, value in keys.items() if value is not None}
+	if "file" not in declared:
+		return None
+	headers = {_HEADER_UNIT.sub("", header).strip(): header for header in _table(pathlib.Path(declared["file"]).expanduser(), name)}
+	known = {key: next((headers[one] for one in names if one in headers), None) for key, names in NAMES.items()}
+	if not {"stress_ratio", "q", "volumetric_strain"} & set(declared):
+		found = ["stress_ratio" if known["stress_ratio"] else "q", "volumetric_strain"]
+		declared.update({key: known[key] for key in found if known[key]})
+		if known["volumetric_strain"]:
+			declared.setdefault("volumetric", "dilation")
+	if known["strain"]:
+		declared.setdefault("strain", known["strain"])
+	return read(declared, "", pressure, name)
 
 
 def _requireKeys(declared, name):

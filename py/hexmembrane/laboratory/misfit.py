@@ -20,6 +20,15 @@ class Number:
 	laboratory: float
 	test: float
 
+	def texts(self):
+		"""(laboratory's, test's) with the unit."""
+		unit = "" if self.unit == "-" else f" {self.unit}"
+		return [f"{value:.4g}{unit}" if math.isfinite(value) else "not reached" for value in (self.laboratory, self.test)]
+
+	def __str__(self):
+		there, here = self.texts()
+		return f"{self.name} {here}" if self.laboratory == 0 else f"{self.name} {here}, laboratory's {there}"
+
 
 def ofTest(table):
 	"""A test's series as a laboratory would have them, from the records of its shear (dict of arrays).
@@ -30,6 +39,21 @@ def ofTest(table):
 	rising = numpy.concatenate([[True], numpy.diff(numpy.maximum.accumulate(strain)) > 0])
 	ratio = 1 + table["q_cell"] / table["sigma3_target"]
 	return {"stress_ratio": Series(strain[rising], ratio[rising]), "volumetric_strain": Series(strain[rising], table["volumetric_strain_volume"][rising])}
+
+
+def ofRecords(curve, table, pressure):
+	"""The :class:`Number` list of a test: those of :func:`numbers`, then the distance along each quantity of the curve; [] without rows of shear.
+
+	:param table: of records.csv, as :func:`hexmembrane.output.records.read` gives it.
+	"""
+	rows = numpy.array([stage == "shear" for stage in table["stage"]], dtype=bool)
+	if not rows.any():
+		return []
+	test = ofTest({name: table[name][rows] for name in ("axial_strain", "q_cell", "sigma3_target", "volumetric_strain_volume")})
+	apart = rootMeanSquare(curve, test)
+	words = {"stress_ratio": ("distance along sigma1/sigma3", "-", 1), "volumetric_strain": ("distance along the volumetric strain", "%", 100)}
+	along = [Number(name, unit, 0.0, factor * apart[quantity]) for quantity, (name, unit, factor) in words.items() if quantity in apart]
+	return [*numbers(curve, test, pressure), *along]
 
 
 def rootMeanSquare(curve, test):

@@ -5,11 +5,12 @@ Every row is written whole and flushed, so that a killed run leaves a readable f
 checkpoint and goes on. Strains count from the start of the row's stage (``stage`` column). Needs no YADE.
 """
 
+from hexmembrane.configuration.stages import ISOTROPIC
 from hexmembrane.output import tables
 from hexmembrane.output.tables import Column
 
 COLUMNS = (
-	Column("stage", "", "consolidation or shear; of a list of stages also unloading, hold, pressure, with a number from the second of a kind on: shear-2", text=True),
+	Column("stage", "", "consolidation or shear; of a list of stages also membrane, unloading, hold, pressure, with a number from the second of a kind on: shear-2", text=True),
 	Column("step", "", "YADE's step, O.iter"),
 	Column("time", "s", "YADE's time, O.time"),
 	Column("axial_strain", "-", "eps1 = (h0 - h)/h0 with h the distance of the platens' faces; compression positive"),
@@ -164,7 +165,7 @@ def read(path, damage=None):
 
 def sheared(table):
 	"""Numbers of the rows that belong to no consolidation."""
-	return [i for i, stage in enumerate(table["stage"]) if not stage.startswith("consolidation")]
+	return [i for i, stage in enumerate(table["stage"]) if not stage.startswith(ISOTROPIC)]
 
 
 def markdown():

@@ -9,6 +9,8 @@ displacement [m], normal_displacement [m] since the first frame along the first 
 pressure [Pa] on the particle (positive inwards, 0 on the O-ring rows); of its triangles: group (the least of the corners'), pressure [Pa] (mean of the corners'),
 hoop_strain, axial_strain [-], hoop_tension, axial_tension [N/m], see :func:`hexmembrane.scene.sheet_state.sheetState`.
 Of a rigid wall's points: pressure [Pa], normal_displacement [m], outward positive.
+Of the contacts, a line each (``output.contacts``): normal_force [N], compression positive, at both ends, for ParaView's filter Tube; of the lines kind, what a grain
+touches there (:data:`hexmembrane.output.frames.KINDS`), and shear_force [N].
 """
 
 import contextlib
@@ -45,8 +47,8 @@ def _attach(data, arrays, count, where):
 		data.AddArray(array)
 
 
-def write(path, points, triangles=None, pointData=None, cellData=None):
-	"""Write points (N, 3), as vertices or with ``triangles`` (M, 3) as a surface, by temporary name and rename.
+def write(path, points, cells=None, pointData=None, cellData=None):
+	"""Write points (N, 3), as vertices, or with ``cells`` of three points (M, 3) as a surface, of two (M, 2) as lines, by temporary name and rename.
 
 	:param pointData: name -> array of N values or N rows.
 	:param cellData: the same per cell.
@@ -54,16 +56,12 @@ def write(path, points, triangles=None, pointData=None, cellData=None):
 	:raises OSError: the file cannot be written.
 	"""
 	path = pathlib.Path(path)
-	points = numpy.ascontiguousarray(points, dtype=float).reshape(-1, 3)
+	points = numpy.ascontiguousarray(points).reshape(-1, 3)
 	data, place = vtkPolyData(), vtkPoints()
 	place.SetData(numpy_to_vtk(points, deep=True))
 	data.SetPoints(place)
-	if triangles is None:
-		cells = numpy.arange(len(points)).reshape(-1, 1)
-		data.SetVerts(_cells(cells))
-	else:
-		cells = numpy.asarray(triangles).reshape(-1, 3)
-		data.SetPolys(_cells(cells))
+	cells = numpy.arange(len(points)).reshape(-1, 1) if cells is None else numpy.asarray(cells)
+	{1: data.SetVerts, 2: data.SetLines, 3: data.SetPolys}[cells.shape[1]](_cells(cells))
 	_attach(data.GetPointData(), pointData or {}, len(points), "points")
 	_attach(data.GetCellData(), cellData or {}, len(cells), "cells")
 	part = path.with_name(path.name + ".part")
@@ -104,14 +102,15 @@ def read(path):
 	reader.SetFileName(str(path))
 	reader.Update()
 	data = reader.GetOutput()
-	surface = data.GetNumberOfPolys() > 0
-	cells = vtk_to_numpy((data.GetPolys() if surface else data.GetVerts()).GetConnectivityArray())
+	held = {1: data.GetVerts(), 2: data.GetLines(), 3: data.GetPolys()}
+	size = next((size for size in (3, 2) if held[size].GetNumberOfCells()), 1)
+	cells = vtk_to_numpy(held[size].GetConnectivityArray())
 
 	def arrays(group):
 		return {group.GetArrayName(k): vtk_to_numpy(group.GetArray(k)) for k in range(group.GetNumberOfArrays())}
 
 	points = vtk_to_numpy(data.GetPoints().GetData())
-	return points, cells.reshape(-1, 3 if surface else 1), arrays(data.GetPointData()), arrays(data.GetCellData())
+	return points, cells.reshape(-1, size), arrays(data.GetPointData()), arrays(data.GetCellData())
 
 
 def series(path, frames):

@@ -19,13 +19,24 @@ def _arguments(argv):
 	parser = argparse.ArgumentParser(prog="scripts/report", description="One page of HTML from tests and studies, that opens from the disk without a network.")
 	parser.add_argument("folders", nargs="+", metavar="DIR", help="output folder of scripts/run or scripts/sweep")
 	parser.add_argument("--out", metavar="FILE", help=f"page to write (default: {_NAME} in the first DIR)")
-	parser.add_argument("--laboratory", action="append", default=[], metavar="CSV", help="curves to lay under: 'axial_strain [-]' and columns of records.csv")
+	parser.add_argument("--laboratory", action="append", default=[], metavar="CSV", help="a laboratory's curve to lay under: axial_strain [unit], stress_ratio or q [unit], volumetric_strain [unit]")
 	parser.add_argument("--text", action="store_true", help="print curves on the terminal and write no page")
 	parser.add_argument("--watch", type=float, nargs="?", const=_SECONDS, metavar="SECONDS", help="renew page and terminal until the tests are at their end")
 	given = parser.parse_args(argv)
 	if given.watch is not None and not 1 <= given.watch <= 3600:
 		parser.error(f"--watch = {given.watch:g}: must be 1 to 3600 seconds")
 	return given
+
+
+def _wait(folders, seconds):
+	"""Until there is something in each folder: a test makes its own a while after it was begun."""
+	for folder in map(pathlib.Path, folders):
+		told = False
+		while not (folder.is_dir() and any(folder.iterdir())):
+			if not told:
+				print(f"waiting for a test in {folder}", flush=True)
+			told = True
+			time.sleep(seconds)
 
 
 def _seen(folders):
@@ -57,6 +68,8 @@ def main(argv):
 	given = _arguments(argv)
 	out = pathlib.Path(given.out or pathlib.Path(given.folders[0]) / _NAME)
 	try:
+		if given.watch is not None:
+			_wait(given.folders, given.watch)
 		before, ended = None, False
 		while not ended:
 			seen = _seen([run.folder for run in runs.gather(given.folders)])

@@ -7,9 +7,7 @@ import pathlib
 
 import numpy as np
 
-from hexmembrane.output import tables
 from hexmembrane.report.encode import numbers
-from hexmembrane.report.runs import ReportError
 from hexmembrane.report.summary import halfWidth
 
 
@@ -46,8 +44,13 @@ PANELS = (
 	Panel("unbalanced", "unbalanced force ratio", "", log=True),
 	Panel("inertial_number", "inertial number", "", log=True),
 )
-#: A stage's rows are drawn over this column: (column, label, unit, factor).
-_OVER = {"shear": ("axial_strain", "axial strain", "%", 100.0), "consolidation": ("time", "time since the stage began", "ms", 1e3)}
+#: What is drawn: its name, and over which column (column, label, unit, factor). The last two are of tests with a list of stages.
+_OVER = {
+	"shear": ("shear", "axial_strain", "axial strain", "%", 100.0),
+	"consolidation": ("consolidation", "time", "time since the stage began", "ms", 1e3),
+	"stages": ("all stages over strain", "axial_strain", "axial strain", "%", 100.0),
+	"time": ("all stages over time", "time", "time since the test began", "ms", 1e3),
+}
 #: Keys that tests with other seeds may have other values of: what they are called, where their files are, what they write.
 _FREE_SECTIONS, _FREE = ("output",), {"title": None, "specimen": ("seed", "packing"), "numerics": ("threads",)}
 #: Strains at which a mean is taken.
@@ -55,15 +58,23 @@ _POINTS = 201
 
 
 def axes():
-	"""For the page: by stage (label, unit) of what rows are drawn over."""
-	return {stage: {"label": label, "unit": unit} for stage, (_, label, unit, _) in _OVER.items()}
+	"""For the page: by stage its name, and label and unit of what rows are drawn over."""
+	return {stage: {"name": name, "label": label, "unit": unit} for stage, (name, _, label, unit, _) in _OVER.items()}
+
+
+def _rows(run, stage):
+	if stage == "stages":
+		return run.sheared() if run.staged else {}
+	if stage == "time":
+		return {name: column for name, column in run.table.items() if name != "stage"} if run.staged else {}
+	return run.rows(stage)
 
 
 def ofRun(run):
 	"""{stage: {"x": [...], name of a panel: [...]}} for the page."""
 	found = {}
-	for stage, (column, _, _, factor) in _OVER.items():
-		rows = run.rows(stage)
+	for stage, (_, column, _, _, factor) in _OVER.items():
+		rows = _rows(run, stage)
 		if rows:
 			x = rows[column] - (rows["time"][0] if column == "time" else 0.0)
 			values = {panel.name: panel.values(rows) for panel in PANELS}
@@ -87,10 +98,10 @@ def _alike(run):
 
 
 def groups(runs):
-	"""Lists of tests with rows of shear that differ in their seed alone, two or more each."""
+	"""Lists of tests with rows of shear that differ in their seed alone, two or more each; lists of stages have no mean, since they pass a strain several times."""
 	found = {}
 	for run in runs:
-		if run.rows("shear") and (alike := _alike(run)) is not None:
+		if run.rows("shear") and not run.staged and (alike := _alike(run)) is not None:
 			found.setdefault(alike, []).append(run)
 	return [group for group in found.values() if len(group) > 1]
 
@@ -98,7 +109,7 @@ def groups(runs):
 def ofGroup(group):
 	"""The mean of a group's curves and half the width of its interval, on strains that all have, for the page."""
 	tables_ = [run.rows("shear") for run in group]
-	column, _, _, factor = _OVER["shear"]
+	_, column, _, _, factor = _OVER["shear"]
 	x = np.linspace(0, min(table[column][-1] for table in tables_), _POINTS)
 	content = {"x": numbers(factor * x)}
 	for panel in PANELS:
@@ -109,18 +120,14 @@ def ofGroup(group):
 	return {"name": f"mean of {len(group)}: {group[0].title}", "members": [run.name for run in group], "shear": content}
 
 
-def laboratory(path):
-	"""A laboratory's curves: a CSV file with ``axial_strain [-]`` and columns of records.csv, in their units.
-
-	:raises ReportError: it is no such file.
-	"""
-	path = pathlib.Path(path)
-	try:
-		table = tables.read(path, needed=("axial_strain",))
-	except (OSError, ValueError) as error:
-		raise ReportError(f"--laboratory = '{path}': cannot be read ({error}); fix: a header such as 'axial_strain [-],q [Pa]', then rows of numbers") from None
-	values = {panel.name: panel.values(table) for panel in PANELS}
-	found = {name: numbers(one) for name, one in values.items() if one is not None}
-	if not found:
-		raise ReportError(f"--laboratory = '{path}': has no column that is drawn; fix: give one of {', '.join(panel.name for panel in PANELS)}")
-	return {"name": path.stem, "shear": {"x": numbers(100 * table["axial_strain"]), **found}}
+def laboratory(curve, pressure):
+	"""A :class:`hexmembrane.laboratory.curve.Curve` at sigma3 [Pa] for the page: q, q/p and volumetric strain where it has them."""
+	series = curve.series
+	strain = np.unique(np.concatenate([one.strain for one in series.values()]))
+	found = {"x": numbers(100 * strain)}
+	if "stress_ratio" in series:
+		ratio = series["stress_ratio"].at(strain)
+		found["q"], found["stress_ratio"] = numbers(1e-3 * pressure * (ratio - 1)), numbers(3 * (ratio - 1) / (ratio + 2))
+	if "volumetric_strain" in series:
+		found["volumetric_strain_volume"] = numbers(100 * series["volumetric_strain"].at(strain))
+	return {"name": f"{curve.name} at {1e-3 * pressure:g} kPa", "shear": found}

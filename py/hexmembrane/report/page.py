@@ -12,13 +12,13 @@ import math
 import pathlib
 
 import hexmembrane
-from hexmembrane.report import curves, libraries, profiles, runs, sections, spatial, verdict
-from hexmembrane.report.encode import script
+from hexmembrane.report import curves, laboratories, libraries, profiles, runs, sections, spatial, verdict
+from hexmembrane.report.encode import numbers, script
 from hexmembrane.report.summary import halfWidth, quantities
 
 _SOURCES = pathlib.Path(__file__).with_name("page")
 #: The page's own scripts, in the order in which they are run.
-_SCRIPTS = ("data", "colours", "figure", "curves", "points", "scene", "sections", "text", "main")
+_SCRIPTS = ("data", "colours", "figure", "curves", "points", "chains", "tools", "scene", "sections", "text", "renew", "main")
 
 
 def _scatter(group):
@@ -27,7 +27,14 @@ def _scatter(group):
 	return float(halfWidth(peaks)) * len(peaks) / sum(peaks), len(peaks)
 
 
-def _content(run, group, every):
+def _rowsOfStages(run):
+	"""Of a test with a list of stages the time [s], strain and stage of each row, which tell where the slider is; None of another test."""
+	if not run.staged or not run.table:
+		return None
+	return {"time": numbers(run.table["time"]), "strain": numbers(run.table["axial_strain"]), "stage": [str(name) for name in run.table["stage"]]}
+
+
+def _content(run, group, every, labs):
 	"""All that the page tells of a test. What reads files comes first: it adds to the run's problems."""
 	scene = spatial.scene(run, every)
 	profile = profiles.measured(run) or (scene or {}).pop("profile", None)
@@ -38,11 +45,13 @@ def _content(run, group, every):
 		"folder": str(run.folder),
 		"state": run.state(),
 		"curves": curves.ofRun(run),
+		"stages": _rowsOfStages(run),
 		"scene": scene,
 		"clouds": sections.ofRun(run),
 		"profile": profile,
 		"summary": verdict.summary(run),
 		"verdict": [vars(check) for check in verdict.checks(run, _scatter(group) if group else None)],
+		"apart": laboratories.apart(run, labs),
 		"configuration": run.text,
 		"made": {str(name): str(value) for name, value in run.made.items() if name != "budget"},
 		"digests": runs.digests(run),
@@ -50,14 +59,15 @@ def _content(run, group, every):
 	}
 
 
-def gather(folders, laboratories=(), watch=None):
+def gather(folders, curvesOfLaboratories=(), watch=None):
 	"""The content of a page.
 
-	:param folders: of tests and studies. :param laboratories: CSV files, see :func:`hexmembrane.report.curves.laboratory`.
+	:param folders: of tests and studies. :param curvesOfLaboratories: CSV files, see :mod:`hexmembrane.report.laboratories`.
 	:param watch: seconds after which the page loads itself anew, None: never.
 	:raises ReportError: a folder or file is none of these.
 	"""
 	found = runs.gather(folders)
+	labs = laboratories.gather(found, curvesOfLaboratories)
 	groups = curves.groups(found)
 	groupOf = {run.name: group for group in groups for run in group}
 	every = max(1, math.ceil(sum(map(spatial.bytesOf, found)) / spatial.MOST_BYTES))
@@ -68,10 +78,10 @@ def gather(folders, laboratories=(), watch=None):
 		"watch": watch,
 		"panels": [{"name": panel.name, "title": panel.title, "unit": panel.unit, "log": panel.log} for panel in curves.PANELS],
 		"axes": curves.axes(),
-		"runs": [_content(run, groupOf.get(run.name), every) for run in found],
+		"runs": [_content(run, groupOf.get(run.name), every, labs) for run in found],
 		"groups": [curves.ofGroup(group) for group in groups],
 		"differences": runs.differences(found),
-		"laboratories": [curves.laboratory(path) for path in laboratories],
+		"laboratories": laboratories.drawn(labs),
 	}
 
 

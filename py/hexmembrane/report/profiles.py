@@ -19,7 +19,7 @@ def measured(run):
 	states = [found["step"] == found["step"][k] for k in first]
 	columns = {"height": 1e3, "radius": 1e3, "axial": 1e-3, "radial": 1e-3}
 	return {
-		"strains": encode.numbers(found["axial_strain"][first]),
+		"strains": encode.numbers(run.at(found["axial_strain"][first], found["step"][first])),
 		"from": "profile.csv: slices of the soil",
 		**{name: [encode.numbers(factor * found[name][rows]) for rows in states] for name, factor in columns.items()},
 	}
@@ -37,7 +37,7 @@ def ofFrames(boundaries, strains):
 		z = points[:, 2] - points[:, 2].min()
 		which = np.minimum((z / max(z.max(), 1e-12) * _SLICES).astype(int), _SLICES - 1)
 		count = np.bincount(which, minlength=_SLICES)
-		with np.errstate(invalid="ignore"):
-			heights.append(encode.numbers(1e3 * np.bincount(which, z, _SLICES) / count))
-			radii.append(encode.numbers(1e3 * np.bincount(which, np.hypot(points[:, 0], points[:, 1]), _SLICES) / count))
+		held = count > 0  # rows of a coarse sheet may be farther apart than slices
+		for found, values in ((heights, z), (radii, np.hypot(points[:, 0], points[:, 1]))):
+			found.append(encode.numbers(1e3 * np.bincount(which, values, _SLICES)[held] / count[held]))
 	return {"strains": strains, "from": "the frames: centres of the boundary's points", "height": heights, "radius": radii}

@@ -4,10 +4,14 @@
 import dataclasses
 import json
 import pathlib
+import re
 
 import numpy as np
 
+from hexmembrane.configuration import Config, ConfigError
 from hexmembrane.configuration.reader import read as readYaml
+from hexmembrane.configuration.schema import build
+from hexmembrane.configuration.stages import ISOTROPIC, MEMBRANE, plan
 from hexmembrane.output import records, tables
 
 #: Folder of a study's stages under it, and the one of a test in a stage, see scripts/sweep.
@@ -51,8 +55,35 @@ class Run:
 		chosen = np.array([name == stage for name in self.table.get("stage", [])], dtype=bool)
 		return {name: column[chosen] for name, column in self.table.items() if name != "stage"} if chosen.any() else {}
 
+	@property
+	def staged(self):
+		"""Whether its configuration has a list of stages."""
+		return isinstance(self.config.get("stages"), list)
+
+	@property
+	def boundary(self):
+		"""Keyword of the lateral boundary that its shear has."""
+		listed = self.config["stages"] if self.staged else []
+		changed = any(isinstance(stage, dict) and stage.get("kind") == MEMBRANE for stage in listed)
+		return "wall" if self.config.get("boundary") == "wall" and not changed else "membrane"
+
+	def kinds(self):
+		"""The kind of the stage of each row: 'unloading' of 'unloading-2'."""
+		return [re.sub(r"-\d+$", "", str(name)) for name in self.table.get("stage", [])]
+
+	def sheared(self, but=()):
+		"""The rows after a consolidation, of all stages but those of the kinds in ``but``; {} without any."""
+		chosen = np.array([kind not in (*ISOTROPIC, *but) for kind in self.kinds()], dtype=bool)
+		return {name: column[chosen] for name, column in self.table.items() if name != "stage"} if chosen.any() else {}
+
+	def at(self, strains, steps):
+		"""Where states are on the page's slider: at their strains; of a list of stages, which pass through a strain several times, at their times [s]."""
+		return np.interp(steps, self.table["step"], self.table["time"]) if self.staged and self.table else np.asarray(strains, dtype=float)
+
 	def state(self):
 		"""'sheared to 12 %', or how far it is."""
+		if self.staged:
+			return self._stateOfStages()
 		shear, wanted = self.rows("shear"), self.key("shear", "strain")
 		if not shear:
 			return "consolidation, no shear yet" if self.rows("consolidation") else "no rows yet"
@@ -60,10 +91,23 @@ class Run:
 		ended = isinstance(wanted, (int, float)) and strain >= (1 - _ENDED) * wanted
 		return f"sheared to {100 * strain:.4g} %" + ("" if ended or wanted is None else f" of {100 * wanted:.4g} %: not at its end")
 
+	def _stateOfStages(self):
+		if not self.table:
+			return "no rows yet"
+		now, strain = str(self.table["stage"][-1]), self.table["axial_strain"][-1]
+		try:
+			planned = plan(build(Config, self.config))
+			labels = [stage.label for stage in planned]
+			begun = f"stage {now}, {labels.index(now) + 1} of {len(labels)}, at {100 * strain:.4g} %"
+		except (ConfigError, ValueError):
+			return f"stage {now} of a list that cannot be read: not at its end"
+		ended = now == labels[-1] and (self.folder / f"{planned[-1].state}.yade.gz").is_file()
+		return f"through {len(labels)} stages, at {100 * strain:.4g} %" if ended else f"{begun}: not at its end"
+
 	@property
 	def ended(self):
-		"""Whether its shear has come to its end."""
-		return self.state().startswith("sheared") and "not at its end" not in self.state()
+		"""Whether its shear, or its last stage, has come to its end."""
+		return self.state().startswith(("sheared", "through")) and "not at its end" not in self.state()
 
 
 def read(folder, name=None):

@@ -15,7 +15,7 @@ def ofRun(run):
 	try:
 		section = clouds.bandSection(run.folder) or clouds.Section()
 		with fields.opened(path) as file:
-			strains = [float(file[name].attrs["axial_strain"]) for name in fields.states(file)]
+			strains, steps = ([float(file[name].attrs[what]) for name in fields.states(file)] for what in ("axial_strain", "step"))
 		states = [clouds.cloud(path, strain, section) for strain in strains]
 	except (OSError, ValueError, KeyError, RuntimeError) as error:
 		run.problems.append(f"fields.h5 cannot be read: {error}")
@@ -31,4 +31,4 @@ def ofRun(run):
 		values = [encode.array(one.values[name][None]) for one in states]
 		quantities.append({"name": name, "label": label, "colours": colours, "range": [float(low), float(high)], "states": values})
 	grids = [{"along": encode.numbers(1e3 * one.along), "height": encode.numbers(1e3 * one.height)} for one in states]
-	return {"strains": encode.numbers(strains), "azimuth": section.azimuth, "grids": grids, "quantities": quantities}
+	return {"strains": encode.numbers(run.at(strains, steps)), "azimuth": section.azimuth, "grids": grids, "quantities": quantities}

@@ -9,7 +9,7 @@ from typing import Callable
 import numpy as np
 
 from hexmembrane.output import vtk
-from hexmembrane.report import encode, profiles
+from hexmembrane.report import chains, encode, profiles
 from hexmembrane.report.runs import table
 
 _FRAME = re.compile(r'timestep="([^"]+)" part="0" file="([^"/]+)"')
@@ -71,15 +71,16 @@ def _series(run, name):
 
 
 def _strains(run, times):
-	"""Axial strains of shear at times, numbered from 0 where the records do not tell."""
+	"""Where frames are on the slider, by their times: axial strains of shear, numbered from 0 where the records do not tell; of a list of stages the times."""
 	shear = run.rows("shear")
+	if run.staged:
+		return np.array(times)
 	return np.interp(times, shear["time"], shear["axial_strain"]) if shear else np.arange(len(times), dtype=float)
 
 
 def _frames(run):
 	"""Pairs of files of a test, grains and boundary: (time, path, path or None) each, only those that are there."""
-	boundary = "wall" if run.config.get("boundary") == "wall" else "membrane"
-	around = dict(_series(run, boundary))
+	around = dict(_series(run, run.boundary))
 	return [(time, path, around.get(time)) for time, path in _series(run, "grains")]
 
 
@@ -135,7 +136,8 @@ def bytesOf(run):
 	if not listed:
 		return 0
 	first = [(_points(path), names) for path, names in zip(listed[0][1:], (GRAINS, BOUNDARY)) if path is not None and path.is_file()]
-	return _BYTES * len(listed) * sum(count * (3 + len(names)) for count, names in first)
+	contacts = next(iter(dict(_series(run, "contacts")).values()), None)
+	return _BYTES * len(listed) * (sum(count * (3 + len(names)) for count, names in first) + (chains.NUMBERS * chains.countOf(contacts) if contacts else 0))
 
 
 def _points(path):
@@ -173,6 +175,12 @@ def scene(run, every=1):
 		found["profile"] = profiles.ofFrames(boundaries, found["strains"])
 	elif any(path for _, _, path in whole):
 		run.problems.append("Not every frame has its lateral boundary: it is left out of the scene.")
+	contacts = dict(_series(run, "contacts"))
+	if contacts:
+		if missing := sum(time not in contacts for time, _, _ in whole):
+			run.problems.append(f"{missing} of {len(whole)} frames have no contacts: there are no force chains.")
+		else:
+			found["chains"] = chains.ofFrames(run, [contacts[time] for time, _, _ in whole])
 	found["bottom"] = encode.numbers([(points[:, 2] - arrays["radius"]).min() for points, _, arrays in grains])
 	found["planes"] = _planes(run)
 	return found
@@ -183,6 +191,7 @@ def _planes(run):
 	bands = table(run, "bands.csv", ("verdict",))
 	if bands is None:
 		return []
-	names = ("axial_strain", "dip", "azimuth", "height", "thickness")
-	found = [[float(bands[name][k]) for name in names] for k, verdict in enumerate(bands["verdict"]) if verdict in ("band", "pair")]
-	return [dict(zip(("strain", *names[1:]), values)) for values in found if np.isfinite(values).all()]
+	names = ("dip", "azimuth", "height", "thickness")
+	at = run.at(bands["axial_strain"], bands["step"])
+	found = [[float(at[k]), *(float(bands[name][k]) for name in names)] for k, verdict in enumerate(bands["verdict"]) if verdict in ("band", "pair")]
+	return [dict(zip(("strain", *names), values)) for values in found if np.isfinite(values).all()]

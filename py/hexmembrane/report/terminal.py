@@ -42,7 +42,7 @@ def plot(x, y, width=64, height=10):
 def lines(run, width=64):
 	"""A test's curves against axial strain in percent, as lines of text."""
 	found = [f"{run.title}: {run.state()}".translate({code: "?" for code in (*range(32), *range(127, 160))})]
-	shear = run.rows("shear")
+	shear = run.sheared()
 	for name, factor, label in _LINES if shear else ():
 		found += [label, *plot(100 * shear["axial_strain"], factor * shear[name], width)]
 	return found

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from hexmembrane.configuration.config import Consolidation, Shear, restTolerance
+from hexmembrane.configuration.stages import ISOTROPIC, PRESSURE
 from hexmembrane.report.summary import quantities
 from hexmembrane.scene.timestep import QUASISTATIC
 
@@ -54,27 +55,42 @@ def checks(run, scatter=None):
 
 	:param scatter: relative half width of the mean peak of q over packings and their number, None: one packing.
 	"""
-	shear, consolidation = run.rows("shear"), run.rows("consolidation")
+	shear, turns = run.sheared(), _turns(run)
 	wanted = run.key("shear", "strain")
-	limit = f"{100 * wanted:.4g} %" if isinstance(wanted, (int, float)) else "unknown"
-	found = [Check("at its end", run.state(), limit, PASS if run.ended else FAIL, "last row of records.csv, shear.strain")]
-	if consolidation:
+	limit = "all stages" if run.staged else f"{100 * wanted:.4g} %" if isinstance(wanted, (int, float)) else "unknown"
+	why = "last row of records.csv, " + ("stages" if run.staged else "shear.strain")
+	found = [Check("at its end", run.state(), limit, PASS if run.ended else FAIL, why)]
+	if turns:
 		limit = run.key("consolidation", "unbalanced", Consolidation.__dataclass_fields__["unbalanced"].default)
-		found.append(_within("at rest before shear", float(consolidation["unbalanced"][-1]), limit, "unbalanced force ratio, consolidation.unbalanced", _number))
+		rest = float(max(run.table["unbalanced"][k - 1] for k in turns))
+		found.append(_within("at rest before shear", rest, limit, "unbalanced force ratio, last row of consolidation, consolidation.unbalanced", _number))
 	if shear:
-		found += _sheared(run, shear)
+		found += _sheared(run, shear, [k for k in turns if k < len(run.table["step"])] or [0])
 	return found + [_budget(run), _packings(run, scatter)]
 
 
-def _sheared(run, shear):
-	first = {name: float(shear[name][0]) for name in ("soil_axial_middle", "soil_radial_middle", "sigma3_target")}
-	off = max(abs(first[name] / first["sigma3_target"] - 1) for name in ("soil_axial_middle", "soil_radial_middle")) if first["sigma3_target"] else math.nan
-	rest = restTolerance(run.key("consolidation", "tolerance"), run.config.get("boundary"), run.key("membrane", "pressureTime"))
+def _turns(run):
+	"""Numbers of the rows that come after the last one of a consolidation, the number of all rows where it has not ended."""
+	kinds = [*run.kinds(), None]
+	return [k for k in range(1, len(kinds)) if kinds[k - 1] in ISOTROPIC and kinds[k] not in ISOTROPIC]
+
+
+def _anisotropy(run, first):
+	"""The larger distance of the middle half's stresses from sigma3 in the rows ``first``, the largest of all; nan without a pressure."""
+	target = run.table["sigma3_target"][first]
+	if not (target != 0).all():
+		return math.nan
+	return float(max(np.abs(run.table[name][first] / target - 1).max() for name in ("soil_axial_middle", "soil_radial_middle")))
+
+
+def _sheared(run, shear, first):
+	off = _anisotropy(run, first)
+	rest = restTolerance(run.key("consolidation", "tolerance"), run.boundary, run.key("membrane", "pressureTime"))
 	arrived = run.key("shear", "pressureTolerance", Shear.__dataclass_fields__["pressureTolerance"].default)
 	found = [
 		_within("isotropic start", off, rest, "soil's axial and radial stress in the middle half against sigma3, first row of shear; consolidation.tolerance"),
 		_within("quasi-static", _largest(shear["inertial_number"]), QUASISTATIC, "largest inertial number in shear", _number),
-		_within("pressure arrived", _largest(shear["sigma3_distance"]), arrived, "largest sigma3_distance in shear, shear.pressureTolerance"),
+		_within("pressure arrived", _largest(run.sheared(but=(PRESSURE,)).get("sigma3_distance", np.array([]))), arrived, "largest sigma3_distance in shear, shear.pressureTolerance"),
 		_within("energy balance", _largest(shear["energy_error"]), ENERGY, "largest energy_error in shear; nan with output.energy: false"),
 	]
 	broken = int(_largest(shear["bonds_broken"]))
@@ -117,7 +133,7 @@ def _packings(run, scatter):
 
 def summary(run):
 	"""The test in numbers for the page, (label, text) pairs; [] without shear."""
-	shear = run.rows("shear")
+	shear = run.sheared()
 	if not shear:
 		return []
 	found = quantities(shear)

@@ -31,6 +31,7 @@ def _arguments(argv):
 	parser.add_argument("--resume", action="store_true", help="go on from the last checkpoint in DIR")
 	parser.add_argument("--until", metavar="STAGE", help="stop after this stage: specimen, boundary, consolidation, shear, or what a list of stages has (default: all)")
 	parser.add_argument("--from", dest="start", metavar="STATE", help="shear a consolidated.yade.gz of another test")
+	parser.add_argument("--lab", metavar="CURVE", help="CSV of a laboratory's curve to draw under the test's, instead of the key lab.file")
 	parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
 	parser.add_argument("--schema", action="store_true", help="print the JSON Schema of a configuration, and end")
 	parser.add_argument("--check", action="store_true", help="check the configuration and say what would be made; nothing is made")
@@ -110,6 +111,8 @@ def main(argv):
 	try:
 		with _terminable():
 			config = configuration.load(arguments.config)
+			if arguments.lab is not None:
+				config = configuration.derived(config, {"lab": {"file": os.path.abspath(plainText("--lab", arguments.lab, LONGEST_PATH))}})
 			requireThreads(config)
 			_restartWithThreads(config.numerics.threads)
 			out = pathlib.Path(plainText("--out", arguments.out or os.path.join("out", pathlib.Path(arguments.config).stem), LONGEST_PATH))

@@ -12,7 +12,7 @@ from hexmembrane.scene.builder import checkTimeStep
 from hexmembrane.scene.timestep import QUASISTATIC
 
 #: Share of the pressure that the first ramp begins with: servos hold no stress of 0.
-_FIRST = 0.01
+FIRST = 0.01
 
 
 class Consolidation(Stage):
@@ -28,13 +28,14 @@ class Consolidation(Stage):
 			test.scene.consolidateAgain()
 			return test.enter(self.planned.label)
 		test.stage = self.planned.label
-		test.scene.setPressure(_FIRST * self.planned.pressure)
+		test.scene.setPressure(FIRST * self.planned.pressure)
 		speed = QUASISTATIC / self.inertialTime()
 		test.scene.topDrive.maxVelocity = speed * test.reference.height
 		test.scene.lateralBoundary.setMaxVelocity(self.config.wall.maxVelocity or speed * test.reference.radius)
 		grains, platens = self.config.specimen.friction, self.config.platens.friction
 		own, smoother = self.config.consolidation.friction, self.config.platens.consolidationFriction
-		test.scene.setFriction(grains if own is None else own, platens if smoother is None else smoother)
+		pairs = self.config.contacts.frictions(platens=smoother)
+		test.scene.setFriction(grains if own is None else own, platens if smoother is None else smoother, pairs)
 		test.enter(self.planned.label)
 		test.checkpoint()
 
@@ -67,12 +68,12 @@ class Consolidation(Stage):
 			)
 
 	def _rampedChunk(self, rampTime, steps):
-		"""Run ``steps`` steps, the pressure following its smooth change by (1 - cos(pi t/T))/2, never below _FIRST of the target."""
+		"""Run ``steps`` steps, the pressure following its smooth change by (1 - cos(pi t/T))/2, never below FIRST of the target."""
 		target, before, test = self.planned.pressure, self.planned.before, self.test
 		end = O.iter + steps
 		while O.iter < end:
 			share = min(1.0, (O.time - test.stageStart["time"]) / rampTime)
-			test.scene.setPressure(max(_FIRST * target, before + (target - before) * (1 - math.cos(math.pi * share)) / 2) if share < 1 else target)
+			test.scene.setPressure(max(FIRST * target, before + (target - before) * (1 - math.cos(math.pi * share)) / 2) if share < 1 else target)
 			part = end - O.iter
 			if share < 1:
 				part = min(part, max(1, math.ceil(rampTime / (RAMP_PARTS * O.dt))))
@@ -92,7 +93,7 @@ class Consolidation(Stage):
 		return errors
 
 	def _tolerance(self):
-		return restTolerance(self.config.consolidation.tolerance, self.config.boundary, self.config.membrane.pressureTime)
+		return restTolerance(self.config.consolidation.tolerance, self.test.scene.lateralBoundary.name, self.config.membrane.pressureTime)
 
 	def _atRest(self, rampTime):
 		row = self.test.lastRow

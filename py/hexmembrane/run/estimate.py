@@ -14,7 +14,7 @@ import shutil
 import numpy
 
 from hexmembrane.configuration import ConfigError
-from hexmembrane.configuration.stages import CONSOLIDATION, plan
+from hexmembrane.configuration.stages import CONSOLIDATION, MEMBRANE, boundaries, plan
 from hexmembrane.run.progress import clock
 from hexmembrane.scene import timestep
 
@@ -24,8 +24,10 @@ SECONDS = {"compact": 1.1e-3 / 19429, "reference": 29 * 1.1e-3 / 19429}
 PROGRAM, SPHERE = 400e6, 6e3
 #: Disk [bytes] a sphere: a kept state, a last checkpoint, a VTK frame; bytes of a row. Measured with 3,416 spheres.
 STATE, CHECKPOINT, FRAME, ROW = 220, 1000, 120, 1000
-#: Disk [bytes] of a report's page, and of a sphere in one of its frames. Measured with 3,416 and 19,429 spheres.
-PAGE, PAGE_FRAME = 1.3e6, 25
+#: Disk [bytes] a sphere of a frame's contacts. Measured with 19,429 spheres and 20,312 contacts.
+CONTACTS = 51
+#: Disk [bytes] of a report's page, and of a sphere in one of its frames, without and of contacts. Measured with 3,416 and 19,429 spheres.
+PAGE, PAGE_FRAME, PAGE_CONTACTS = 1.3e6, 25, 10
 #: Largest number of steps of the pressure's rise, and of the shear: at 20 us a step, that of a few hundred spheres, they take six hours.
 MOST_STEPS = 10**9
 #: Largest number of threads a processor: more of them only wait for each other.
@@ -107,12 +109,13 @@ class Estimate:
 		particles, particleRadius = _membrane(config, float(radii.min()))
 		step = _step(config, radii, particleRadius)
 		stages = plan(config)
-		rises = [_changeTime(config, radii, stage) / step for stage in stages if stage.kind == CONSOLIDATION]
+		rises = [_changeTime(config, radii, stage) / step for stage in stages if stage.kind in (CONSOLIDATION, MEMBRANE)]
 		rise = max(rises)
 		consolidation = sum(min(2.5 * steps + config.output.consolidationSteps, config.consolidation.maxSteps) for steps in rises)
 		sheared = _seconds(config, radii, stages) / step
 		spheres = len(radii) + particles
 		frames = sum(stage.records for stage in stages) / config.output.vtkEvery + 2 * (len(stages) - 1) if config.output.vtkEvery else 0
+		frame, pageFrame = FRAME + CONTACTS * config.output.contacts, PAGE_FRAME + PAGE_CONTACTS * config.output.contacts
 		rows = sum(stage.records for stage in stages) + consolidation / config.output.consolidationSteps
 		return cls(
 			grains=len(radii),
@@ -123,7 +126,7 @@ class Estimate:
 			shear=sheared,
 			seconds=(consolidation + sheared) * spheres * SECONDS[config.tier],
 			memory=PROGRAM + SPHERE * spheres,
-			disk=spheres * (3 * STATE + 3 * CHECKPOINT + FRAME * frames) + ROW * rows + (PAGE + PAGE_FRAME * spheres * frames) * config.output.report,
+			disk=spheres * (3 * STATE + 3 * CHECKPOINT + frame * frames) + ROW * rows + (PAGE + pageFrame * spheres * frames) * config.output.report,
 		)
 
 	def line(self):
@@ -235,7 +238,7 @@ def _seconds(config, radii, stages):
 	"""Time in the test [s] of the stages that are no consolidation, nearly."""
 	total, at = 0.0, 0.0
 	for stage in stages:
-		if stage.kind == CONSOLIDATION:
+		if stage.kind in (CONSOLIDATION, MEMBRANE):
 			at = 0.0
 		elif not stage.straining:
 			total += _changeTime(config, radii, stage)
@@ -248,7 +251,7 @@ def _seconds(config, radii, stages):
 
 def _membrane(config, smallest):
 	"""(number, radius [m]) of the membrane's spheres, nearly; (0, None) with a rigid wall."""
-	if config.boundary != "membrane":
+	if "membrane" not in boundaries(config):
 		return 0, None
 	keys, specimen = config.membrane, config.specimen
 	radius = keys.particleRadius or keys.sizeRatio * smallest
@@ -262,12 +265,12 @@ def _step(config, radii, particleRadius):
 	numerics, keys, specimen = config.numerics, config.membrane, config.specimen
 	if numerics.dt is not None:
 		return numerics.dt
-	grains = timestep.grainStep(specimen, radii)
+	grains = timestep.grainsStep(config, radii)
 	if particleRadius is None:
 		return numerics.safety * grains
 	mass = timestep.sphereMass(particleRadius, keys.density)
 	bonds = 2 * math.sqrt(mass / (6 * keys.young * keys.thickness / (math.sqrt(3) * (1 - keys.poisson))))
-	membrane = timestep.membraneStep(specimen.springs, config.springs("membrane"), keys.density, float(radii.max()), particleRadius, bonds)
+	membrane = timestep.membraneStep(specimen.springs, config.springs("membrane"), keys.density, float(radii.max()), particleRadius, bonds, config.contacts.grainMembrane)
 	return numerics.safety * min(grains, math.sqrt(timestep.densityScaling(keys.densityScaling, grains, membrane)) * membrane)
 
 

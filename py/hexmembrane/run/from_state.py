@@ -11,17 +11,19 @@ import numpy
 import yade
 from yade import BodyArrays, O
 
-from hexmembrane.configuration import ConfigError, toDict
+from hexmembrane.configuration import ConfigError
+from hexmembrane.configuration.contacts import PAIRS
 from hexmembrane.configuration.reader import read
+from hexmembrane.configuration.schema import sections
 from hexmembrane.configuration.specimen import PATHS, SOURCES
-from hexmembrane.configuration.stages import plan
+from hexmembrane.configuration.stages import CONSOLIDATION, MEMBRANE, SHEAR, boundaries, plan
 from hexmembrane.run import manifest
 from hexmembrane.scene import specimen
 from hexmembrane.scene.handles import Scene, compactLoop
 
 #: Sections and keys that act from the state on, or only say how a result is shown; files are known by the grains that they give.
-_APPLIED_SECTIONS = ("shear", "measure", "output", "numerics")
-_APPLIED = ("title", "tier", "accuracy", "stages", "specimen.friction", "platens.friction", *(f"specimen.{name}" for name in PATHS))
+_APPLIED_SECTIONS = ("shear", "measure", "output", "numerics", "lab")
+_APPLIED = ("title", "tier", "accuracy", "stages", "specimen.friction", "platens.friction", *(f"contacts.{name}.friction" for name in PAIRS), *(f"specimen.{name}" for name in PATHS))
 #: Keys that say how a packing is made.
 _MAKING = ("scale", "cutBelow", "cutAbove", "grains", "porosity", "seed", "stress", "packingRollingFriction", "ballsUnit", *SOURCES)
 #: Relative difference of what counts as the same number, and of the same radius in a file.
@@ -41,28 +43,56 @@ def adopt(config, path, say):
 		say("WARNING: no config.yaml of its test lies beside the state: stiffness, density, sheet, servos and sizes are compared, other keys cannot be")
 		return None
 	own, taken = read(beside), []
-	for section, keys in toDict(config).items():
-		values = own.get(section)
-		if not isinstance(keys, dict) or not isinstance(values, dict) or section in _APPLIED_SECTIONS or _isOther(section, config):
+	for section, keys, values in _sections(config, own):
+		if section in _APPLIED_SECTIONS or _isOther(section, config, own, path):
 			continue
-		for name, value in keys.items():
+		for name, value in vars(keys).items():
 			key = f"{section}.{name}"
-			if key in _APPLIED or name not in values or value == values[name] or (section, name) == ("consolidation", "pressure"):
+			if key in _APPLIED or name not in values or isinstance(values[name], dict) or value == values[name] or (section, name) == ("consolidation", "pressure"):
 				continue
 			if section == "specimen" and name in _MAKING and not (config.specimen.made and values.get("packing") is None and values.get("balls") is None):
 				continue
 			if key in config.given:
 				raise ConfigError(key, value, f"the state was made with {values[name]!r}", "give that value, leave the key out, or make a specimen anew without --from")
-			setattr(getattr(config, section), name, values[name])
+			setattr(keys, name, values[name])
 			taken.append(f"{key} = {values[name]}")
 	if taken:
 		say("taken from the state's own configuration: " + ", ".join(taken))
 	return own
 
 
-def _isOther(section, config):
-	"""Whether the section is of a lateral boundary that the test does not have."""
-	return section == {"membrane": "wall", "wall": "membrane"}[config.boundary]
+def _sections(section, own, path=""):
+	"""(path, section, its values in the state's configuration) of the sections in a configuration or one of them, at any depth."""
+	for field in sections(type(section)):
+		inner, values = getattr(section, field.name), own.get(field.name)
+		if isinstance(values, dict):
+			yield path + field.name, inner, values
+			yield from _sections(inner, values, f"{path}{field.name}.")
+
+
+def _isOther(section, config, own, path):
+	"""Whether the section is of a lateral boundary that the test does not have, or that the state does not have yet."""
+	if section not in ("membrane", "wall"):
+		return False
+	return section not in boundaries(config) or section == "membrane" and pathlib.Path(path).name in _inTheWall(own)
+
+
+def _inTheWall(own):
+	"""Names of the states of a test that have a wall; ``own``: its configuration as it was read."""
+	if own.get("boundary") != "wall":
+		return ()
+	kinds = [entry.get("kind") for entry in own.get("stages") or ({"kind": CONSOLIDATION}, {"kind": SHEAR})]
+	before = kinds[: kinds.index(MEMBRANE)] if MEMBRANE in kinds else kinds
+	return tuple(f"{'consolidated' if k == 0 else f'{CONSOLIDATION}-{k + 1}'}.yade.gz" for k in range(before.count(CONSOLIDATION)))
+
+
+def nextStage(config, boundary):
+	"""Number of the stage in the plan that a state with this lateral boundary goes on with."""
+	stages = plan(config)
+	kinds = [stage.kind for stage in stages]
+	if boundary == "wall" and MEMBRANE in kinds:
+		return kinds.index(MEMBRANE)
+	return next(k for k, stage in enumerate(stages) if stage.chain)
 
 
 def require(config, path):
@@ -73,19 +103,21 @@ def require(config, path):
 	"""
 	scene = Scene()
 	boundary = scene.lateralBoundary
-	if boundary.name != config.boundary:
-		raise ConfigError("boundary", config.boundary, f"the state has a {boundary.name}", f"give boundary: {boundary.name}")
+	if boundary.name not in boundaries(config):
+		fix = f"give boundary: {boundary.name}" + (", with '- {kind: membrane}' among the stages" if boundary.name == "wall" else "")
+		raise ConfigError("boundary", config.boundary, f"the state has a {boundary.name}", fix)
 	grains = scene.grainIds()
 	radii = BodyArrays.radii(grains)
 	moved = numpy.linalg.norm(BodyArrays.displacements(grains), axis=1) / radii
 	if moved.max() > _MOVED:
 		raise ConfigError("--from", str(path), "is no state at the end of a consolidation: its grains have moved since its stage began", "give consolidated.yade.gz of its folder")
-	wanted, pressure = next(stage for stage in plan(config) if stage.chain).before, scene.pressure
+	wanted, pressure = plan(config)[nextStage(config, boundary.name)].before, scene.pressure
 	if abs(pressure - wanted) > _SAME * wanted:
 		raise ConfigError("consolidation.pressure", wanted, f"the state was consolidated at {pressure} Pa", "give that pressure")
 	for key, wants, has in _facts(config, boundary):
 		if wants is not None and not (wants == has or not isinstance(wants, (bool, str)) and abs(has - wants) <= _SAME * abs(wants)):
 			raise ConfigError(key, wants, f"the state has {has!r}", "give that value, or make a specimen anew without --from")
+	_requirePairs(config)
 	planned = numpy.sort(specimen.plannedRadii(config))
 	if len(planned) != len(radii) or abs(numpy.sort(radii) / planned - 1).max() > _SAME_SIZE:
 		name = next(name for name in SOURCES if getattr(config.specimen, name) is not None)
@@ -94,9 +126,21 @@ def require(config, path):
 	_requireTravel(config, scene)
 
 
+def _requirePairs(config):
+	"""Check what contacts of pairs of groups have of their own against the state's materials; frictions are applied. What no file told is taken over."""
+	for name, (one, other) in PAIRS.items():
+		pair, has = getattr(config.contacts, name), O.materials[one].pairs().get(other, {})
+		for key in (key for key in vars(pair) if key != "friction"):
+			wants, value = getattr(pair, key), has.get(key)
+			path = f"contacts.{name}.{key}"
+			if path in config.given and wants != value:
+				raise ConfigError(path, wants, f"the state has {value!r}", "give that value, leave the key out, or make a specimen anew without --from")
+			setattr(pair, key, value)
+
+
 def _facts(config, boundary):
 	"""(key, value in the configuration, value in the state) of what a state tells; a None is not compared."""
-	groups = {"specimen": "grain", "platens": "platen", config.boundary: config.boundary}
+	groups = {"specimen": "grain", "platens": "platen", boundary.name: boundary.name}
 	found = []
 	for section, label in groups.items():
 		material, springs = O.materials[label], config.springs(section)
@@ -106,14 +150,15 @@ def _facts(config, boundary):
 			found.append((f"{owner}.{names.get(name, name) if owner == section else name}", value, getattr(material, name)))
 	keys = config.specimen
 	found += [("specimen.density", keys.density, O.materials["grain"].density), ("specimen.rollingFriction", keys.rollingFriction, O.materials["grain"].rollingFriction)]
-	if config.boundary == "wall":
+	if boundary.name == "wall":
 		servo = boundary.servo
 		return [*found, ("wall.damping", config.wall.damping, servo.damping), ("wall.tolerance", config.wall.tolerance, servo.tolerance)]
 	own, bonds = config.membrane, boundary.bonds
 	found += [(f"membrane.{name}", getattr(own, name), getattr(bonds, name)) for name in ("young", "thickness", "poisson", "tensionOnly", "tensileStrength", "shearStrength")]
 	found += [("membrane.maxFactor", own.maxFactor, boundary.pressureEngine.maxFactor), ("membrane.facets", own.facets, boundary.facets is not None), ("membrane.surface", own.surface, boundary.pressureEngine.surface)]
 	found += [("membrane.oRings", own.oRings, boundary.oRings.mode), ("membrane.placement", own.placement, boundary.membrane.placement)]
-	found += [(f"specimen.{name}", getattr(keys, name), getattr(boundary.membrane, f"specimen{name.title()}")) for name in ("radius", "height")]
+	if config.boundary == "membrane":  # else it has the size that the specimen had in the wall
+		found += [(f"specimen.{name}", getattr(keys, name), getattr(boundary.membrane, f"specimen{name.title()}")) for name in ("radius", "height")]
 	found.append(("membrane.pressureTime", own.pressureTime, boundary.pressureEngine.timeConstant))
 	if boundary.radialServo:
 		found.append(("membrane.servoMaxFactor", own.servoMaxFactor, boundary.radialServo.maxFactor))

@@ -11,6 +11,7 @@ import numpy as np
 import yade
 from yade import BodyArrays
 
+from hexmembrane.configuration.stages import boundaries
 from hexmembrane.measure import bands, profile
 from hexmembrane.measure.local import FIELDS, LocalHistory
 from hexmembrane.measure.regions import RegionHistory
@@ -92,7 +93,7 @@ class Inside:
 		if self.keys.local:
 			self._local = LocalHistory(scene, _decoded(facts["local"]) if facts else None)
 			self._d50 = bands.medianDiameter(self._local.radii)
-			test = {"title": self.config.title, "boundary": self.config.boundary, "pressure": self.config.consolidation.pressure, "d50": self._d50}
+			test = {"title": self.config.title, "boundary": boundaries(self.config)[-1], "pressure": self.config.consolidation.pressure, "d50": self._d50}
 			self._fields = FieldsFile(self.out / "fields.h5", test, FIELDS, facts.get("row")) if self.keys.strains else None
 			self._arrays()
 		if self.keys.regions:

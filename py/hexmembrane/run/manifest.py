@@ -20,8 +20,8 @@ import hexmembrane
 NAME = "manifest.json"
 #: Of the manifest itself.
 FORMAT = 2
-#: Raised when states of before cannot be read any more. 2: contacts of the compact tier by the model's own list of fields.
-STATES = 2
+#: Raised when states of before cannot be read any more. 3: materials have pairs.
+STATES = 3
 #: Checkpoints that are kept.
 KEPT = 2
 _STAGE = re.compile(r"generated|[a-z]{1,20}(-[0-9]{1,6})?")

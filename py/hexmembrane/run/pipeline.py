@@ -10,7 +10,9 @@ from yade import O
 from hexmembrane import configuration
 from hexmembrane.configuration import Config, ConfigError, toDict
 from hexmembrane.configuration.schema import freeKeys
-from hexmembrane.configuration.stages import plan
+from hexmembrane.configuration.stages import MEMBRANE, boundaries, boundariesIn, plan
+from hexmembrane.laboratory import curve, misfit
+from hexmembrane.output import records
 from hexmembrane.output.plots import plot
 from hexmembrane.run import checkpoints, estimate, from_state, progress, stages, states, straining
 from hexmembrane.run.checkpoints import FolderError, Store
@@ -51,7 +53,8 @@ def _sameTest(config, store):
 	store.require("config.yaml")
 	path = store.folder / "config.yaml"
 	before = configuration.load(path)
-	odd = [name for name in checkpoints.differences(toDict(before), toDict(config)) if name not in freeKeys(Config)]
+	free = freeKeys(Config)
+	odd = [name for name in checkpoints.differences(toDict(before), toDict(config)) if not any(f"{name}.".startswith(f"{key}.") for key in free)]
 	if odd:
 		raise CheckpointError(
 			f"checkpoint = '{store.folder}': was made with other values of {', '.join(odd)}; fix: resume with the configuration "
@@ -70,9 +73,10 @@ def _goOn(config, store, tell):
 	with Image.read(path, store.manifest.states[checkpoint.state]) as image:
 		image.load(path)
 	boundary = Scene().lateralBoundary.name
-	if (O.iter, boundary) != (checkpoint.step, config.boundary):
+	wanted = boundariesIn(config, checkpoint.stage)
+	if O.iter != checkpoint.step or boundary not in wanted:
 		raise CheckpointError(
-			f"state = '{path}': is of step {O.iter} with a {boundary}, the checkpoint is of step {checkpoint.step} with a {config.boundary}; "
+			f"state = '{path}': is of step {O.iter} with a {boundary}, the checkpoint is of step {checkpoint.step} with a {' or '.join(wanted)}; "
 			"fix: put the test's own state back"
 		)
 	store.goOnFrom(resumed)
@@ -90,6 +94,7 @@ def _wantOwnSettings(config):
 def prepare(config, out, say):
 	"""Choose what ``accuracy`` leaves open, say what the test needs, refuse what cannot be; the error budget of the settings."""
 	estimate.requireThreads(config)
+	curve.ofKeys(toDict(config.lab), config.consolidation.pressure)  # a wrong one is told before the test
 	estimate.requireTravel(config)
 	radii = specimen.plannedRadii(config)
 	if config.accuracy is not None:
@@ -125,9 +130,9 @@ def check(config, out, start=None, say=progress.tell):
 		f"specimen: {len(radii)} grains of radius {radii.min():.4g} to {radii.max():.4g} mm in {2e3 * keys.radius:.4g} x {1e3 * keys.height:.4g} mm"
 		+ (f", porosity {keys.porosity:g} asked for" if keys.made and start is None else "")
 	)
-	say(f"boundary: {config.boundary}, tier {config.tier}")
-	for planned in plan(config):
-		if start is None or planned.chain:
+	say(f"boundary: {', then '.join(boundaries(config))}, tier {config.tier}")
+	for planned in plan(config)[0 if start is None else from_state.nextStage(config, Scene().lateralBoundary.name) :]:
+		if start is None or planned.chain or planned.kind == MEMBRANE:
 			say(f"{planned.label}: {planned.describe()}")
 	say(f"nothing was made; the same command without --check makes it in {pathlib.Path(out)}" + (f", from {start}" if own or start else ""))
 
@@ -194,7 +199,7 @@ def _run(config, budget, settled, store, until, start, own, quiet, say, tell):
 		configuration.save(config, out / "config.yaml", budget=budget.asDict())
 		store.seal("config.yaml")
 		test = stages.TriaxialTest(config, out, quiet, store)
-		test.begin(next(k for k, planned in enumerate(test.plan) if planned.chain))
+		test.begin(from_state.nextStage(config, test.scene.lateralBoundary.name))
 		test.checkpoint()
 	else:
 		configuration.save(config, out / "config.yaml", budget=budget.asDict())
@@ -231,11 +236,14 @@ def _stages(test, until, say):
 	test.proceed(until)
 	if until is None or test.plan[[planned.label for planned in test.plan].index(until)].chain:
 		picture = test.out / checkpoints.PICTURE
-		plot(test.records.path, picture, test.config.title)
+		pressure = test.config.consolidation.pressure
+		laboratory = curve.ofKeys(toDict(test.config.lab), pressure)
+		found = misfit.ofRecords(laboratory, records.read(test.records.path), pressure) if laboratory else []
+		plot(test.records.path, picture, test.config.title, laboratory, pressure, found)
+		for line in [*laboratory.warnings, *(f"laboratory {laboratory.name}: {one}" for one in found)] if laboratory else ():
+			say(line)
 		say(f"wrote {test.records.path}, {picture}" + (f" and {test.frames.folder}" if test.frames.written else ""))
-		if test.config.output.report and test.config.stages is None:
+		if test.config.output.report:
 			_report(test.out, say)
-		elif test.config.output.report:
-			say(f"no {checkpoints.REPORT}: its page shows one consolidation and one shear, and this test has a list of stages")
 	say(f"done in {clock(test.elapsed())}")
 	return test

@@ -55,5 +55,5 @@ class Stage(abc.ABC):
 			return test.enterNext(self.planned.label)
 		test.enter(self.planned.label)
 		test.scene.holdRadialLoad()
-		test.scene.setFriction(self.config.specimen.friction, self.config.platens.friction)
+		test.scene.setFriction(self.config.specimen.friction, self.config.platens.friction, self.config.contacts.frictions())
 		test.scene.setTimeLimit(None)

@@ -11,12 +11,13 @@ import time
 
 from yade import BodyArrays, O
 
-from hexmembrane.configuration.stages import CONSOLIDATION, plan
+from hexmembrane.configuration.stages import CONSOLIDATION, MEMBRANE, plan
 from hexmembrane.measure import rows
 from hexmembrane.output.frames import Frames
 from hexmembrane.output.records import Records
 from hexmembrane.run.checkpoints import RECORDS, Store
 from hexmembrane.run.consolidation import Consolidation
+from hexmembrane.run.from_wall import FromWall
 from hexmembrane.run.inside import Inside
 from hexmembrane.run.manifest import Checkpoint, Entry
 from hexmembrane.run.stage import StageError
@@ -51,7 +52,7 @@ class TriaxialTest:
 		self.stage, self.rowCount, self.lastRow, self._earlier = "generated", 0, None, 0.0
 		if resumed is None:
 			self.stageStart, self.reference = {"step": O.iter, "time": O.time, "strain": 0.0}, rows.Reference.of(self.scene)
-			self.frames, self.records = Frames(self.out), Records(self.out / RECORDS)
+			self.frames, self.records = Frames(self.out, config.output.contacts), Records(self.out / RECORDS)
 			self.inside = Inside(config, self.out)
 		else:
 			self._goOnFrom(resumed)
@@ -62,7 +63,7 @@ class TriaxialTest:
 		self.stage, self.rowCount, self.lastRow, self._earlier = checkpoint.stage, resumed.rows, resumed.last, checkpoint.elapsed
 		self.stageStart, self.reference = checkpoint.begun, rows.Reference(**checkpoint.reference)
 		self._earlierRows = self._countEarlier(resumed.count)
-		self.frames, self.records = Frames(self.out, checkpoint.frames), Records(self.out / RECORDS, checkpoint.records.size)
+		self.frames, self.records = Frames(self.out, self.config.output.contacts, checkpoint.frames), Records(self.out / RECORDS, checkpoint.records.size)
 		self.inside = Inside(self.config, self.out, checkpoint.inside)
 		self.scene.tellCheckpoint(self.out / checkpoint.state)
 
@@ -217,7 +218,8 @@ class TriaxialTest:
 	def stageAt(self, k):
 		"""What runs stage ``k`` of the plan."""
 		planned = self.plan[k]
-		return (Consolidation if planned.kind == CONSOLIDATION else Straining if planned.straining else Resting)(self, planned)
+		special = {CONSOLIDATION: Consolidation, MEMBRANE: FromWall}.get(planned.kind)
+		return (special or (Straining if planned.straining else Resting))(self, planned)
 
 	@property
 	def present(self):

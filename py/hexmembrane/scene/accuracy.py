@@ -22,6 +22,7 @@ from typing import Callable
 import numpy
 
 from hexmembrane.configuration import ConfigError
+from hexmembrane.configuration.stages import boundaries
 from hexmembrane.scene import timestep
 
 #: What errors are told of, as the curves have it: relative, and absolute.
@@ -53,7 +54,7 @@ class Knob:
 
 	def applies(self, config):
 		"""Whether the setting means something in this test."""
-		return not self.key.startswith("membrane.") or config.boundary == "membrane"
+		return not self.key.startswith("membrane.") or "membrane" in boundaries(config)
 
 
 def _rate(config, radii):
@@ -243,7 +244,7 @@ def budget(config, radii, measured=None):
 def _switchLevel(config):
 	if not config.specimen.massScaling:
 		return "off"
-	return "on with the membrane" if config.boundary == "membrane" and config.membrane.densityScaling is None else "on"
+	return "on with the membrane" if "membrane" in boundaries(config) and config.membrane.densityScaling is None else "on"
 
 
 def _keyOf(knob, config):

@@ -7,9 +7,10 @@ import math
 import yade
 from yade import O, utils
 
+from hexmembrane.configuration.stages import boundaries
 from hexmembrane.scene import timestep
 from hexmembrane.scene.boundaries import CLASSES
-from hexmembrane.scene.flexible_membrane import MASK
+from hexmembrane.scene.flexible_membrane import MASK, overhang
 from hexmembrane.scene.handles import Scene, compactLoop
 from hexmembrane.scene.platens import platen
 
@@ -25,6 +26,9 @@ def _materials(config):
 		yade.LinearMat(friction=grain.friction, rollingFriction=grain.rollingFriction, density=grain.density, label="grain", **grain.springs.given())
 	)
 	O.materials.append(yade.LinearMat(friction=platens.friction, density=grain.density, label="platen", **config.springs("platens").given()))
+	for (one, other), pair in config.contacts.pairs().items():
+		if pair.given():
+			O.materials[one].setPair(other, **pair.given())
 
 
 def _raiseMasses(config, ids, radii, say):
@@ -41,10 +45,13 @@ def _raiseMasses(config, ids, radii, say):
 	)
 
 
-def _platens(config, parts):
-	"""Append the two platens; their ids, bottom first."""
+def _platens(config, parts, laterOverhang):
+	"""Append the two platens; their ids, bottom first.
+
+	:param laterOverhang: how far the boundary that takes the present one's place will reach beyond the specimen, both ends together [m]; 0: none does.
+	"""
 	travel = (config.shear.strain + 0.1) * config.specimen.height
-	thickness = config.platens.thickness or parts.overhang + travel
+	thickness = config.platens.thickness or max(parts.overhang, laterOverhang) + travel
 	ids = []
 	for z, facing in ((0.0, 1), (config.specimen.height, -1)):
 		ids.append(O.bodies.append(platen((0, 0, z), parts.platenRadius, thickness, facing=facing, material=O.materials["platen"])))
@@ -69,7 +76,7 @@ def interactionLoop():
 	)
 
 
-def _engines(config, inner, smallest):
+def engines(config, inner, smallest):
 	"""The list of engines of the configuration's tier round those of lateral boundary and end platens, which both tiers share.
 
 	:param smallest: radius of the smallest sphere [m].
@@ -107,7 +114,7 @@ def setTier(config):
 		loop.exportContacts()
 	inner = list(loop.engines) if loop else [engine for engine in O.engines if yade.CompactLoop.canStep(engine)]
 	radii = [body.shape.radius for body in O.bodies if isinstance(body.shape, yade.Sphere)]
-	O.engines = _engines(config, inner, min(radii))
+	O.engines = engines(config, inner, min(radii))
 
 
 def build(config, packing, say=print):
@@ -125,18 +132,20 @@ def build(config, packing, say=print):
 	if config.specimen.massScaling:
 		_raiseMasses(config, grains, packing.radii, say)
 	parts = CLASSES[config.boundary].make(config, packing)
-	bottom, top = _platens(config, parts)
+	later = "membrane" in boundaries(config) and config.boundary == "wall"
+	bottom, top = _platens(config, parts, overhang(config.membrane, float(packing.radii.min())) if later else 0.0)
 	smallest = float(packing.radii.min())
 	before, after = parts.engines(bottom, top)
 	drives = [
 		yade.PlatenDrive(platen=bottom, direction=(0, 0, 1), mode="velocity", velocity=0.0),
 		yade.PlatenDrive(platen=top, direction=(0, 0, -1), mode="stress", stress=0.0, area=math.pi * packing.radius**2),
 	]
-	servos = _stressServos(config, packing, parts, bottom, top, drives[1], before)
-	O.engines = _engines(config, [*servos, *before, *drives, *after], min(smallest, parts.smallestRadius))
+	measure = yade.SoilMeasure(bottomPlaten=bottom, topPlaten=top, **parts.around)
+	servos = [*_axialServo(config, packing.radii, measure, drives[1]), *radialServo(config, packing.radii, measure, before)]
+	O.engines = engines(config, [*servos, *before, *drives, *after], min(smallest, parts.smallestRadius))
 	O.trackEnergy = config.output.energy
 	scene = Scene()
-	_setTimeStep(config, timestep.grainStep(config.specimen, packing.radii), parts, say)
+	_setTimeStep(config, timestep.grainsStep(config, packing.radii), parts, say)
 	for line in parts.log:
 		say(line)
 	level = timestep.levelOf(config.specimen.springs, packing.radii, config.consolidation.pressure)
@@ -147,23 +156,27 @@ def build(config, packing, say=print):
 	return scene
 
 
-def _stressServos(config, packing, parts, bottom, top, drive, lateral):
-	"""The engines that close the top platen's stress, and the membrane's pressure, on the soil's own stress; those that are asked for.
-
-	:param lateral: engines of the lateral boundary.
-	"""
+def _axialServo(config, radii, measure, drive):
+	"""The engine that closes the top platen's stress on the soil's own, where that is asked for: a list of one or none."""
 	keys = config.consolidation
-	inertial = timestep.inertialTime(packing.radii, config.specimen.density, keys.pressure)
-	measure = yade.SoilMeasure(bottomPlaten=bottom, topPlaten=top, **parts.around)
-	servos = []
-	if keys.axial == "soil":
-		servos.append(yade.SoilStressServo(measure=measure, drive=drive, stress=0.0, timeConstant=keys.stressTime or 10 * inertial, maxFactor=keys.maxFactor))
+	if keys.axial != "soil":
+		return []
+	time = keys.stressTime or 10 * timestep.inertialTime(radii, config.specimen.density, keys.pressure)
+	return [yade.SoilStressServo(measure=measure, drive=drive, stress=0.0, timeConstant=time, maxFactor=keys.maxFactor)]
+
+
+def radialServo(config, radii, measure, lateral):
+	"""The engine that closes the membrane's pressure on the soil's own stress, where that is asked for and there is a membrane: a list of one or none.
+
+	:param radii: of the grains [m]. :param measure: the SoilMeasure. :param lateral: engines of the lateral boundary.
+	"""
+	keys, byName = config.consolidation, {type(engine).__name__: engine for engine in lateral}
 	closed = config.membrane.pressureTime != math.inf
-	if config.boundary == "membrane" and (keys.radial or ("soil" if closed else "transmitted")) == "soil":
-		byName = {type(engine).__name__: engine for engine in lateral}
-		loads = {"pressure": byName["MembranePressure"], "beside": byName.get("MembraneRadialServo")}
-		servos.append(yade.SoilStressServo(measure=measure, stress=0.0, timeConstant=keys.stressTime or 20 * inertial, maxFactor=keys.maxFactor, **loads))
-	return servos
+	if "MembranePressure" not in byName or (keys.radial or ("soil" if closed else "transmitted")) != "soil":
+		return []
+	loads = {"pressure": byName["MembranePressure"], "beside": byName.get("MembraneRadialServo")}
+	time = keys.stressTime or 20 * timestep.inertialTime(radii, config.specimen.density, keys.pressure)
+	return [yade.SoilStressServo(measure=measure, stress=0.0, timeConstant=time, maxFactor=keys.maxFactor, **loads)]
 
 
 def _setTimeStep(config, grains, parts, say):
@@ -175,6 +188,16 @@ def _setTimeStep(config, grains, parts, say):
 	O.dt = asked or config.numerics.safety * critical
 	boundary = f", {config.boundary} {parts.criticalStep:.4g} s" if math.isfinite(parts.criticalStep) else ""
 	say(f"time step {O.dt:.4g} s; critical: grains {grains:.4g} s{boundary}")
+
+
+def lowerTimeStep(config, critical, say):
+	"""Lower O.dt for a part that comes later, with this critical step [s]; an explicit one above it is an error."""
+	if config.numerics.dt is not None and config.numerics.dt > critical:
+		raise ValueError(f"numerics.dt = {config.numerics.dt:g} s: is above the critical time step {critical:.4g} s of what comes; fix: lower it or leave it out")
+	allowed = config.numerics.safety * critical
+	if config.numerics.dt is None and O.dt > allowed:
+		say(f"time step lowered from {O.dt:.4g} s to {allowed:.4g} s")
+		O.dt = allowed
 
 
 def checkTimeStep(config, scene, say):

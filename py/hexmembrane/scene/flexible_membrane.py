@@ -5,6 +5,7 @@ Masks: grains and platens carry bit 1, membrane spheres bits 1 and 2, and the co
 membrane meets grains and platens but not itself.
 """
 
+import dataclasses
 import math
 
 import numpy
@@ -35,18 +36,45 @@ def platenRows(wished, particleRadius, smallest):
 	return max(2, math.ceil(2 * smallest / (math.sqrt(3) * particleRadius)))
 
 
-def generate(config, particleRadius, smallest):
+def overhang(keys, smallest):
+	"""How far the O-ring rows reach beyond the specimen at most, both ends together [m].
+
+	:param keys: configuration's membrane section. :param smallest: the smallest grain's radius [m].
+	"""
+	return 2 * (keys.oRingRows + 1) * math.sqrt(3) * (keys.particleRadius or keys.sizeRatio * smallest)
+
+
+@dataclasses.dataclass
+class Soil:
+	"""What a membrane is put round.
+
+	:param radii: of the grains [m].
+	:param radius: of the cylinder that they fill [m].
+	:param height: of it [m].
+	:param origin: centre of its lower end [m].
+	"""
+
+	radii: numpy.ndarray
+	radius: float
+	height: float
+	origin: tuple = (0.0, 0.0, 0.0)
+
+
+def generate(config, radius, soil, particleRadius, smallest):
 	"""A membrane as configured, its density not scaled, generated with a material of its own.
 
+	:param radius: of the specimen as HexMembrane wants it [m].
+	:param soil: the :class:`Soil` that it is put round.
 	:param particleRadius: wished radius of its spheres [m].
 	:param smallest: smallest grain's radius [m].
 	:raises ValueError: it is too coarse for the specimen or the grains, and such.
 	"""
-	keys, grain = config.membrane, config.specimen
+	keys = config.membrane
 	O.materials.append(yade.LinearMat(friction=0, density=keys.density, label="membrane", **config.springs("membrane").given()))
 	membrane = yade.HexMembrane(
-		specimenRadius=grain.radius,
-		specimenHeight=grain.height,
+		specimenRadius=radius,
+		specimenHeight=soil.height,
+		origin=soil.origin,
 		particleRadius=particleRadius,
 		placement=keys.placement,
 		oRingRows=keys.oRingRows,
@@ -104,9 +132,13 @@ def sheetEngines(keys, membrane, bending):
 	return sheet
 
 
-def facetEngines(keys, membrane, bonds):
-	"""The engine that keeps grains from pressing themselves through a stretched mesh, as configured: a list of one or none."""
-	return [yade.MembraneFacetContact(membrane=membrane, bonds=bonds)] if keys.facets else []
+def facetEngines(keys, membrane, bonds, own):
+	"""The engine that keeps grains from pressing themselves through a stretched mesh, as configured: a list of one or none.
+
+	:param own: what contacts of grains and membrane have of their own, a :class:`hexmembrane.configuration.contacts.PairContact`.
+	"""
+	stiffness = {"kn": own.normal(membrane.sphereRadius / 2)} if own.stiff else {}
+	return [yade.MembraneFacetContact(membrane=membrane, bonds=bonds, **stiffness)] if keys.facets else []
 
 
 def sheetStep(sheet):
@@ -137,24 +169,29 @@ class FlexibleMembrane(LateralBoundary):
 
 	@classmethod
 	def make(cls, config, packing):
+		return cls.round(config, config.specimen.radius, Soil(packing.radii, packing.radius, config.specimen.height))
+
+	@classmethod
+	def round(cls, config, radius, soil):
+		"""As :meth:`make`, round any :class:`Soil`; ``radius``: of the specimen as HexMembrane wants it [m]."""
 		keys = config.membrane
-		smallest, largest = float(packing.radii.min()), float(packing.radii.max())
-		membrane = generate(config, keys.particleRadius or keys.sizeRatio * smallest, smallest)
-		bending = bendingStiffness(config, packing.radii)
+		smallest, largest = float(soil.radii.min()), float(soil.radii.max())
+		membrane = generate(config, radius, soil, keys.particleRadius or keys.sizeRatio * smallest, smallest)
+		bending = bendingStiffness(config, soil.radii)
 		sheet = sheetEngines(keys, membrane, bending)
 		springs = config.specimen.springs, config.springs("membrane")
-		unscaled = timestep.membraneStep(*springs, keys.density, largest, membrane.sphereRadius, sheetStep(sheet))
-		scaling = timestep.densityScaling(keys.densityScaling, timestep.grainStep(config.specimen, packing.radii), unscaled)
+		unscaled = timestep.membraneStep(*springs, keys.density, largest, membrane.sphereRadius, sheetStep(sheet), config.contacts.grainMembrane)
+		scaling = timestep.densityScaling(keys.densityScaling, timestep.grainStep(config.specimen, soil.radii), unscaled)
 		scaleDensity(membrane, scaling)
 
-		inertial = timestep.inertialTime(packing.radii, config.specimen.density, config.consolidation.pressure)
+		inertial = timestep.inertialTime(soil.radii, config.specimen.density, config.consolidation.pressure)
 		servoTime = keys.servoTime or 4 * inertial
 		pressureTime = keys.pressureTime or 10 * inertial
 
 		def engines(bottom, top):
 			before = [
 				*sheet,
-				*facetEngines(keys, membrane, sheet[0]),
+				*facetEngines(keys, membrane, sheet[0], config.contacts.grainMembrane),
 				yade.MembranePressure(membrane=membrane, pressure=0.0, surface=keys.surface, timeConstant=pressureTime, maxFactor=keys.maxFactor),
 			]
 			if 2 in membrane.groups:
@@ -163,15 +200,15 @@ class FlexibleMembrane(LateralBoundary):
 
 		return BoundaryParts(
 			engines=engines,
-			platenRadius=packing.radius,
-			overhang=membrane.rings * membrane.ringSpacing - config.specimen.height,
+			platenRadius=soil.radius,
+			overhang=membrane.rings * membrane.ringSpacing - soil.height,
 			smallestRadius=membrane.sphereRadius,
 			criticalStep=math.sqrt(scaling) * unscaled,
 			around={"membrane": membrane},
 			log=[
 				cls._description(keys, membrane, smallest, bending),
-				*cls._scaled(config, packing, membrane, scaling, unscaled),
-				*cls._warning(config, packing, bending),
+				*cls._scaled(config, soil.radii, membrane, scaling, unscaled),
+				*cls._warning(config, soil.radii, bending),
 			],
 		)
 
@@ -185,20 +222,20 @@ class FlexibleMembrane(LateralBoundary):
 		)
 
 	@staticmethod
-	def _scaled(config, packing, membrane, scaling, unscaled):
+	def _scaled(config, radii, membrane, scaling, unscaled):
 		if scaling == 1:
 			return []
 		mass = len(membrane.ids) * timestep.sphereMass(membrane.sphereRadius, scaling * config.membrane.density)
-		share = mass / timestep.sphereMass(packing.radii, config.specimen.density).sum()
+		share = mass / timestep.sphereMass(radii, config.specimen.density).sum()
 		return [
 			f"membrane's density times {scaling:.3g}: its critical step is {math.sqrt(scaling) * unscaled:.4g} s instead of {unscaled:.4g} s, its mass "
 			f"{100 * share:.2g} % of the grains' instead of {100 * share / scaling:.2g} %; what that does is the column membrane_unbalanced"
 		]
 
 	@staticmethod
-	def _warning(config, packing, bending):
+	def _warning(config, radii, bending):
 		"""The rule of a sheet that is too weak for its grains, from what became of tests to 20 % strain (README of pkg/membrane, Weak sheets)."""
-		radius, pressure = float((packing.radii**3).mean()) ** (1 / 3), config.consolidation.pressure
+		radius, pressure = float((radii**3).mean()) ** (1 / 3), config.consolidation.pressure
 		stretched = pressure * radius / (config.membrane.young * config.membrane.thickness)
 		sag = pressure * radius**3 / (64 * bending) if bending > 0 else math.inf
 		if stretched <= MOST_STRETCHED or sag <= MOST_SAG:

@@ -79,12 +79,18 @@ class Scene:
 		self.lateralBoundary.addFrequencySquare(square)
 		return timestep.contactStep(*_springs(), *_masses(), square)
 
-	def setFriction(self, grains, platens):
-		"""Give the grains and the platens, and the contacts that they have, coefficients of friction; the lesser of two materials acts."""
+	def setFriction(self, grains, platens, pairs=None):
+		"""Give the grains and the platens, and the contacts that they have, coefficients of friction; the lesser of two materials acts.
+
+		:param pairs: {(label, label): the friction of this pair's contacts instead, None: the lesser}; None: pairs stay as they are.
+		"""
 		O.materials["grain"].friction = grains
 		O.materials["platen"].friction = platens
+		for (one, other), friction in (pairs or {}).items():
+			_setPairFriction(one, other, friction)
 		for contact in O.interactions:
-			contact.phys.tangensOfFrictionAngle = min(O.bodies[i].material.friction for i in (contact.id1, contact.id2))
+			one, other = (O.bodies[i].material for i in (contact.id1, contact.id2))
+			contact.phys.tangensOfFrictionAngle = one.pairFriction(other)
 
 	def setPressure(self, pressure):
 		"""Give the lateral boundary and the top platen the confining pressure [Pa]."""
@@ -135,6 +141,19 @@ class Scene:
 		self.lateralBoundary.setTimeLimit(limit)
 
 
+def _setPairFriction(owner, partner, friction):
+	"""Give contacts of two materials, by their labels, a friction of their own, None: none."""
+	material = O.materials[owner]
+	before = material.pairs().get(partner, {})
+	own = {name: value for name, value in before.items() if name != "friction"}
+	if friction is not None:
+		own["friction"] = friction
+	if own:
+		material.setPair(partner, **own)
+	elif before:
+		material.removePair(partner)
+
+
 def compactLoop():
 	"""The compact tier's engine in ``O``, None in the reference tier."""
 	return next((engine for engine in O.engines if isinstance(engine, yade.CompactLoop)), None)
@@ -142,7 +161,10 @@ def compactLoop():
 
 def _springs():
 	"""The contacts in ``O`` as :func:`hexmembrane.scene.timestep.contactStep` takes them: pairs, normals, stiffness, arms."""
-	radii = [b.shape.radius if isinstance(b.shape, yade.Sphere) else 0.0 for b in O.bodies]
+	radii = numpy.zeros(len(O.bodies))
+	for body in O.bodies:
+		if isinstance(body.shape, yade.Sphere):
+			radii[body.id] = body.shape.radius
 	pairs, normals, stiffness = [], [], []
 	for contact in O.interactions:
 		phys = contact.phys
@@ -151,14 +173,16 @@ def _springs():
 		normals.append(tuple(contact.geom.normal))
 		stiffness.append((phys.kn, shear, phys.kr))
 	pairs = numpy.array(pairs, dtype=int).reshape(-1, 2)
-	return pairs, numpy.array(normals).reshape(-1, 3), numpy.array(stiffness).reshape(-1, 3), numpy.array(radii)[pairs]
+	return pairs, numpy.array(normals).reshape(-1, 3), numpy.array(stiffness).reshape(-1, 3), radii[pairs]
 
 
 def _masses():
-	"""Mass and moment of inertia of each body, inf for what does not move or turn."""
-	mass, inertia = [], []
+	"""Mass and moment of inertia of each body, inf for what does not move or turn, or is gone."""
+	mass, inertia = numpy.full((2, len(O.bodies)), math.inf)
 	for body in O.bodies:
 		blocked = set(body.state.blockedDOFs) if body.dynamic else set("xyzXYZ")
-		mass.append(math.inf if set("xyz") <= blocked else body.state.mass)
-		inertia.append(math.inf if set("XYZ") <= blocked else min(body.state.inertia))
-	return numpy.array(mass), numpy.array(inertia)
+		if not set("xyz") <= blocked:
+			mass[body.id] = body.state.mass
+		if not set("XYZ") <= blocked:
+			inertia[body.id] = min(body.state.inertia)
+	return mass, inertia

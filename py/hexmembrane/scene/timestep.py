@@ -90,19 +90,42 @@ def grainStep(specimen, radii):
 	return 2 / math.sqrt(2 * CONTACTS / 3 * kn * max(translation, rotation) / sphereMass(radius, specimen.density))
 
 
-def membraneStep(grains, membrane, density, largest, particleRadius, sheetStep):
+def grainsStep(config, radii):
+	"""The same of the grains of a test, among them a smallest one on a platen or wall whose contacts have a stiffness of their own.
+
+	Such a contact adds kn/m to omega^2, or ks (1/m + R^2/(0.4 m R^2)) = 3.5 ks/m.
+
+	:param config: a configuration.
+	:param radii: of the grains, or one radius [m].
+	"""
+	specimen, radius = config.specimen, float(numpy.min(radii))
+	mass = sphereMass(radius, specimen.density)
+	if specimen.massScaling:
+		mass *= float(numpy.max(massFactors(radii, specimen.springs.direct)))
+	pairs = (config.contacts.grainPlaten, config.contacts.grainWall)
+	stiffest = max((pair.normal(radius) * max(1.0, 3.5 / pair.ratio) for pair in pairs if pair.stiff), default=0.0)
+	step = grainStep(specimen, radii)
+	return 2 / math.sqrt((2 / step) ** 2 + stiffest / mass) if stiffest else step
+
+
+def membraneStep(grains, membrane, density, largest, particleRadius, sheetStep, own=None):
 	"""Critical step [s] of the membrane's spheres before there are contacts: GRAINS_PER_PARTICLE grains of the largest radius and the sheet's own springs at once.
 
-	The contacts are smooth, so they turn nothing.
+	The contacts are smooth, so they turn nothing; those with a friction of their own add 3.5 ks.
 
 	:param grains, membrane: stiffness of either, :class:`hexmembrane.configuration.stiffness.Springs`.
 	:param density: of the membrane's spheres [kg/m3].
 	:param largest: largest grain radius [m].
 	:param particleRadius: of the membrane's spheres [m].
 	:param sheetStep: critical step of the sheet alone [s], its bonds and what else holds it together.
+	:param own: what contacts of grains and membrane have of their own, a :class:`hexmembrane.configuration.contacts.PairContact`; None: nothing.
 	:returns: the step without ``membrane.densityScaling``, which multiplies it by its root.
 	"""
-	contacts = GRAINS_PER_PARTICLE * pairStiffness(grains, membrane, particleRadius, largest)
+	kn = pairStiffness(grains, membrane, particleRadius, largest)
+	if own and own.stiff:
+		kn = own.normal(min(particleRadius, largest) ** 2 / (particleRadius + largest))
+	rough = 3.5 / (own.ratio if own.stiff else min(grains.ratio, membrane.ratio)) if own and own.friction else 0.0
+	contacts = GRAINS_PER_PARTICLE * kn * (1 + rough)
 	return 2 / math.sqrt(contacts / sphereMass(particleRadius, density) + (2 / sheetStep) ** 2)
 
 

@@ -5,6 +5,7 @@
 		cividis: d3.interpolateCividis,
 		inferno: d3.interpolateInferno,
 		magma: d3.interpolateMagma,
+		plasma: d3.interpolatePlasma,
 		RdBu_r: (t) => d3.interpolateRdBu(1 - t),
 	};
 	const GREY = [150, 150, 150];

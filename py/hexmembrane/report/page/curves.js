@@ -10,10 +10,11 @@
 		MANY = 6,
 		MOST_TAGS = 8,
 		TAG = 11,
-		DECADES = 4;
+		DECADES = 4,
+		MOST_PASSES = 4;
 	const DASHES = ["none", "7 3", "2 2.5", "9 3 2 3"];
 	const { content } = report;
-	const state = { stage: "shear", domain: null, cursor: null, marker: null };
+	const state = { stage: "shear", domain: null, cursor: null, marker: {} };
 	const panels = [];
 
 	// What can be drawn: means of groups first, then tests, then a laboratory's.
@@ -34,6 +35,18 @@
 	);
 
 	const visible = (panel) => series.filter((one) => one.shown && one.stages[state.stage]?.[panel.name]);
+	// Where a curve that turns round passes x: its first values there, as text.
+	const valuesAt = (data, name, x) => {
+		const found = [];
+		for (let k = 1; k < data.x.length; ++k) {
+			const [a, b] = [data.x[k - 1], data.x[k]];
+			if (a !== b && Math.min(a, b) <= x && x <= Math.max(a, b) && !(x === a && k > 1)) {
+				const [low, high] = [data[name][k - 1], data[name][k]];
+				found.push(low === null || high === null ? null : low + ((x - a) / (b - a)) * (high - low));
+			}
+		}
+		return found.slice(0, MOST_PASSES).map((one) => report.number(one)).join(" / ") + (found.length > MOST_PASSES ? " / ..." : "") || "–";
+	};
 	const valueAt = (data, name, x) => {
 		const k = d3.bisectLeft(data.x, x);
 		if (k === 0 || k >= data.x.length) return data[name][report.nearest(data.x, x)];
@@ -83,7 +96,7 @@
 
 	function domain() {
 		const ends = series.filter((one) => one.shown && one.stages[state.stage]).map((one) => one.stages[state.stage].x);
-		return [d3.min(ends, (x) => x[0]) ?? 0, d3.max(ends, (x) => x[x.length - 1]) || 1];
+		return [d3.min(ends, (x) => d3.min(x)) ?? 0, d3.max(ends, (x) => d3.max(x)) || 1];
 	}
 
 	function make(panel, parent) {
@@ -251,8 +264,9 @@
 			if (figure.hidden) return;
 			const within = (at) => at !== null && at >= x.domain()[0] && at <= x.domain()[1];
 			cursor.attr("visibility", within(state.cursor) ? "visible" : "hidden");
-			marker.attr("visibility", state.stage === "shear" && within(state.marker) ? "visible" : "hidden");
-			if (within(state.marker)) marker.attr("x1", x(state.marker)).attr("x2", x(state.marker));
+			const at = state.marker[state.stage] ?? null;
+			marker.attr("visibility", within(at) ? "visible" : "hidden");
+			if (within(at)) marker.attr("x1", x(at)).attr("x2", x(at));
 			if (!within(state.cursor)) {
 				readout.textContent = "";
 				return;
@@ -264,7 +278,11 @@
 					const data = one.stages[state.stage];
 					return (
 						(series.length > 1 ? `${one.tag}: ` : "") +
-						(state.cursor > data.x[data.x.length - 1] ? "–" : report.number(valueAt(data, panel.name, state.cursor)))
+						(state.stage === "stages"
+							? valuesAt(data, panel.name, state.cursor)
+							: state.cursor > data.x[data.x.length - 1]
+								? "–"
+								: report.number(valueAt(data, panel.name, state.cursor)))
 					);
 				});
 			readout.textContent = `at ${report.number(state.cursor, 3)} ${axis().unit}:   ${values.join("   ")} ${panel.unit}`;
@@ -300,14 +318,16 @@
 	}
 
 	report.curves = {
-		// Build all into the section; nothing without rows.
-		show(section) {
+		// Build all into the section; nothing without rows. before: what view() gave.
+		show(section, before) {
 			const stages = Object.keys(content.axes).filter((stage) => series.some((one) => one.stages[stage]));
 			if (!stages.length) {
 				section.append(report.element("p", {}, "No row has been written yet: there are no curves."));
 				return;
 			}
-			if (!stages.includes("shear")) state.stage = stages[0];
+			state.stage = [before?.stage, "stages", "shear"].find((one) => stages.includes(one)) ?? stages[0];
+			if (before && state.stage === before.stage) state.domain = before.domain;
+			if (before) series.forEach((one) => (one.shown = !before.hidden.includes(one.name)));
 			const { element } = report;
 			if (series.length > 1) {
 				const all = element(
@@ -353,7 +373,7 @@
 						redraw();
 					},
 				},
-				...stages.map((stage) => element("option", { value: stage, selected: stage === state.stage }, stage)),
+				...stages.map((stage) => element("option", { value: stage, selected: stage === state.stage }, content.axes[stage].name)),
 			);
 			section.append(
 				element(
@@ -371,11 +391,13 @@
 			panels.push(...content.panels.map((panel) => make(panel, parent)));
 			redraw();
 		},
-		// Mark a strain [%] in all panels.
-		mark(strain) {
-			state.marker = strain;
+		// Mark a place in all panels: stage -> place on its axis.
+		mark(places) {
+			state.marker = places;
 			panels.forEach((panel) => panel.drawCursor());
 		},
 		redraw,
+		// What the reader has chosen, for a page that is loaded anew.
+		view: () => ({ stage: state.stage, domain: state.domain, hidden: series.filter((one) => !one.shown).map((one) => one.name) }),
 	};
 }

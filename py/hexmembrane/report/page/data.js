@@ -43,6 +43,17 @@ const report = { content: JSON.parse(document.getElementById("data").textContent
 		return String(Number(value.toPrecision(digits)));
 	};
 
+	// Where the slider is, in words. Of a test with a list of stages it goes by time [s], of another by strain.
+	const rowAt = (run, at) => report.nearest(run.stages.time, at);
+	report.told = (run, at) => {
+		if (!run.stages) return `${report.number(100 * at, 3)} %`;
+		const k = rowAt(run, at);
+		return `${report.number(100 * run.stages.strain[k], 3)} % (${run.stages.stage[k]}, ${report.number(1e3 * (at - run.stages.time[0]), 4)} ms)`;
+	};
+	// The same on the axes of the curves: stage -> place there.
+	report.marks = (run, at) =>
+		run.stages ? { stages: 100 * run.stages.strain[rowAt(run, at)], time: 1e3 * (at - run.stages.time[0]) } : { shear: 100 * at };
+
 	// An element with attributes and children; text is never read as markup.
 	report.element = (name, attributes = {}, ...children) => {
 		const made = document.createElement(name);

@@ -38,13 +38,13 @@
 	async function show(index) {
 		find("strain").value = index;
 		const strain = state.strains[index];
-		find("at").textContent = `${report.number(100 * strain, 3)} %`;
+		find("at").textContent = report.told(state.run, strain);
 		keep("strain", strain);
-		report.curves.mark(100 * strain);
+		report.curves.mark(report.marks(state.run, strain));
 		await Promise.all(state.parts.map((part) => part.show(strain)));
 	}
 
-	async function pick(run) {
+	async function pick(run, before) {
 		state.run = run;
 		keep("run", run.name);
 		report.verdict(verdict, run);
@@ -54,7 +54,7 @@
 			left = element("div"),
 			right = element("div");
 		state.parts = [
-			...(run.scene ? [new report.Scene(left, run)] : []),
+			...(run.scene ? [new report.Scene(left, run, before)] : []),
 			...(run.clouds ? [new report.Clouds(right, run)] : []),
 			...(run.profile ? [new report.Profile(right, run)] : []),
 		];
@@ -63,7 +63,9 @@
 		inside.className = both ? "specimen both" : "specimen";
 		inside.replaceChildren(left, right);
 		const all = [run.scene, run.clouds, run.profile].flatMap((part) => part?.strains ?? []);
-		state.strains = all.sort((a, b) => a - b).filter((one, k) => k === 0 || one - all[k - 1] > 1e-5);
+		find("over").textContent = run.stages ? "time" : "axial strain";
+		const same = run.stages ? 1e-6 * Math.max(...all) : 1e-5;
+		state.strains = all.sort((a, b) => a - b).filter((one, k) => k === 0 || one - all[k - 1] > same);
 		find("slide").hidden = find("play").hidden = state.strains.length < 2;
 		if (!state.strains.length) return;
 		find("strain").max = state.strains.length - 1;
@@ -88,7 +90,8 @@
 	theme();
 	report.problems();
 	report.overview(find("verdict"));
-	report.curves.show(find("curves"));
+	const before = report.before();
+	report.curves.show(find("curves"), before?.curves);
 	const [verdict, inside, origin] = ["verdict", "inside", "origin"].map((id) => {
 		const made = element("div");
 		find(id).append(made);
@@ -108,6 +111,7 @@
 	);
 	find("run").value = first;
 	report.state = state;
-	report.ready = pick(content.runs[first]);
-	if (content.watch) setTimeout(() => location.reload(), 1000 * content.watch);
+	report.ready = pick(content.runs[first], before?.scene);
+	if (content.watch) report.renew(() => ({ curves: report.curves.view(), scene: state.parts[0]?.view?.() ?? null }));
+	if (before) report.ready.then(() => scrollTo(0, before.scroll));
 }

@@ -4,12 +4,14 @@
 		FIELD = 30,
 		SLOW = 40,
 		LEAST = 0.35,
-		TURN = 0.09;
+		TURN = 0.09,
+		CHAINS = "plasma";
 	const { element } = report;
-	const WANTED = { grains: "", boundary: "", sheet: "back", cut: false, depth: 0, azimuth: 0, bands: true };
+	const WANTED = { grains: "", boundary: "", sheet: "back", cut: false, depth: 0, azimuth: 0, bands: true, chains: false, share: 20 };
 
 	class Scene {
-		constructor(parent, run) {
+		// before: what view() gave.
+		constructor(parent, run, before) {
 			Object.assign(this, { run, data: run.scene, frame: 0, options: { ...WANTED }, ratio: 1, moved: 0 });
 			const { data } = this;
 			this.options.grains = (data.grains.quantities.find((one) => one.name === "shear") ?? data.grains.quantities[0])?.name ?? "";
@@ -19,8 +21,10 @@
 				csv: () => this.csv(),
 			});
 			this.figure = figure;
+			Object.assign(this.options, before?.options);
+			this.before = before;
 			this.caption = caption;
-			figure.append(this.tools());
+			figure.append(report.tools(data, this.options, { fill: () => this.fill(), look: (direction) => this.look(direction) }));
 			this.stage = element("div", {
 				class: "stage",
 				tabindex: 0,
@@ -28,66 +32,9 @@
 				"aria-label": "The specimen in space. Arrow keys turn it, + and - bring it nearer and farther.",
 			});
 			this.bars = element("div", { class: "bars" });
-			figure.append(this.stage, this.bars);
+			this.told = element("output", { class: "readout" });
+			figure.append(this.stage, this.bars, this.told);
 			this.begin();
-		}
-
-		tools() {
-			const { data, options } = this;
-			const change = (name, value) => {
-				options[name] = value;
-				this.fill();
-			};
-			const select = (label, name, choices) =>
-				element(
-					"label",
-					{},
-					label,
-					element(
-						"select",
-						{ onchange: (event) => change(name, event.target.value) },
-						...choices.map(([value, text]) => element("option", { value, selected: value === options[name] }, text)),
-					),
-				);
-			const listed = (quantities) => quantities.map((one) => [one.name, one.label]);
-			const slider = (label, name, min, max) =>
-				element(
-					"label",
-					{},
-					label,
-					element("input", { type: "range", min, max, value: options[name], oninput: (event) => change(name, Number(event.target.value)) }),
-				);
-			const box = (label, name) =>
-				element(
-					"label",
-					{},
-					element("input", { type: "checkbox", checked: options[name], onchange: (event) => change(name, event.target.checked) }),
-					label,
-				);
-			const made = element(
-				"div",
-				{ class: "tools" },
-				select("grains coloured by ", "grains", [...listed(data.grains.quantities), ["none", "not shown"]]),
-			);
-			if (data.boundary)
-				made.append(
-					select("boundary ", "sheet", [
-						["back", "its back half"],
-						["whole", "whole"],
-						["glass", "see-through"],
-						["none", "not shown"],
-					]),
-					select("coloured by ", "boundary", listed(data.boundary.quantities)),
-				);
-			made.append(box("cut", "cut"), slider("at ", "depth", -100, 100), slider("turned ", "azimuth", 0, 360));
-			if (data.planes.length) made.append(box("planes of bands", "bands"));
-			for (const [name, direction] of [
-				["front", [0, -1, 0.15]],
-				["side", [1, 0, 0.15]],
-				["top", [0, -0.01, 1]],
-			])
-				made.append(element("button", { type: "button", onclick: () => this.look(direction) }, name));
-			return made;
 		}
 
 		begin() {
@@ -139,6 +86,10 @@
 				this.sheet.frustumCulled = false;
 				this.scene.add(this.sheet);
 			}
+			if (data.chains) {
+				this.chains = new report.Chains(data.chains, d3.mean(this.radii));
+				this.scene.add(this.chains.object);
+			}
 			this.planes = new THREE.Group();
 			this.scene.add(this.planes);
 			const box = new THREE.Box3();
@@ -147,6 +98,11 @@
 			this.centre = box.getCenter(new THREE.Vector3());
 			this.size = box.getSize(new THREE.Vector3());
 			this.look([0.45, -1, 0.28]);
+			if (this.before) {
+				this.camera.position.fromArray(this.before.camera);
+				this.controls.target.fromArray(this.before.target);
+				this.controls.update();
+			}
 			await this.fill();
 		}
 
@@ -160,6 +116,12 @@
 			this.controls.target.copy(this.centre);
 			this.controls.update();
 			this.draw();
+		}
+
+		// What the reader has chosen, for a page that is loaded anew; nothing before it is drawn.
+		view() {
+			if (!this.centre) return null;
+			return { options: this.options, camera: this.camera.position.toArray(), target: this.controls.target.toArray() };
 		}
 
 		key(event) {
@@ -203,7 +165,9 @@
 				wanted = (this.wanted = {});
 			const [grains, sheet] = [this.quantity("grains"), this.quantity("boundary")];
 			const [values, sheetValues] = [grains && (await report.array(grains.values))[frame], sheet && (await report.array(sheet.values))[frame]];
+			const carried = options.chains ? await this.chains.fill(frame, options.share, CHAINS) : "";
 			if (wanted !== this.wanted) return; // another was asked for meanwhile
+			this.told.textContent = carried;
 			this.values = values;
 			this.place(this.spheres.position.array, this.positions[frame]);
 			this.paint(this.spheres.tint.array, values, grains);
@@ -212,7 +176,8 @@
 			const angle = (options.azimuth * Math.PI) / 180,
 				normal = new THREE.Vector3(Math.cos(angle), Math.sin(angle), 0);
 			const far = options.cut ? normal.dot(this.centre) + (options.depth / 100) * (this.size.x / 2) : 1e9;
-			this.spheres.material.uniforms.cut.value.set(normal.x, normal.y, 0, far);
+			for (const one of [this.spheres, this.chains]) one?.material.uniforms.cut.value.set(normal.x, normal.y, 0, far);
+			if (this.chains) this.chains.object.visible = options.chains;
 			if (this.sheet) {
 				const { geometry, material } = this.sheet;
 				this.place(geometry.attributes.position.array, this.sheetPositions[frame]);
@@ -275,22 +240,24 @@
 		}
 
 		describe(grains, sheet) {
-			this.caption.textContent = `${this.run.title}: grains and lateral boundary at ${report.number(100 * this.data.strains[this.frame], 3)} %`;
-			const named = (one) => one.label + (one.unit ? ` [${one.unit}]` : "");
+			this.caption.textContent = `${this.run.title}: grains and lateral boundary at ${report.told(this.run, this.data.strains[this.frame])}`;
+			const { options } = this,
+				named = (one) => one.label + (one.unit ? ` [${one.unit}]` : "");
 			this.shown = [
 				["grains", grains],
-				["boundary", this.options.sheet === "none" ? null : sheet],
+				["boundary", options.sheet === "none" ? null : sheet],
 			]
 				.filter((one) => one[1])
-				.map(([who, one]) => [`${who}: ${named(one)}`, one]);
+				.map(([who, one]) => [`${who}: ${named(one)}`, this.map(one), one.range]);
+			if (options.chains) this.shown.push(["contacts: normal force over its mean", CHAINS, this.chains.range]);
 			this.bars.replaceChildren(
-				...this.shown.map(([label, one]) => {
+				...this.shown.map(([label, map, range]) => {
 					const svg = d3
 						.create("svg")
 						.attr("viewBox", "0 0 240 44")
 						.attr("role", "img")
-						.attr("aria-label", `${label}, from ${report.number(one.range[0])} to ${report.number(one.range[1])}`);
-					report.bar(svg, 2, 17, 230, this.map(one), one.range, label);
+						.attr("aria-label", `${label}, from ${report.number(range[0])} to ${report.number(range[1])}`);
+					report.bar(svg, 2, 17, 230, map, range, label);
 					return svg.node();
 				}),
 			);
@@ -383,14 +350,16 @@
 				.attr("width", 640)
 				.attr("height", (640 * height) / width)
 				.attr("href", this.renderer.domElement.toDataURL());
-			this.shown.forEach(([label, one], k) => report.bar(svg, 8 + 310 * k, (640 * height) / width + 44, 260, this.map(one), one.range, label));
+			this.shown.forEach(([label, map, range], k) => report.bar(svg, 8 + 212 * k, (640 * height) / width + 44, 196, map, range, label));
 			this.figure.append(svg.node());
 			const text = report.alone(svg.node());
 			svg.remove();
 			return text;
 		}
 
+		// Of the contacts where they are drawn without the grains, else of the grains.
 		csv() {
+			if (this.options.chains && this.options.grains === "none") return this.chains.csv();
 			const position = this.positions[this.frame],
 				grains = this.quantity("grains"),
 				header = ["x [m]", "y [m]", "z [m]", "radius [m]"];
@@ -411,6 +380,7 @@
 			cancelAnimationFrame(this.pending);
 			clearTimeout(this.rest);
 			this.spheres?.dispose();
+			this.chains?.dispose();
 			this.sheet?.geometry.dispose();
 			this.renderer?.dispose();
 			this.renderer?.forceContextLoss();

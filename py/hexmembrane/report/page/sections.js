@@ -45,7 +45,7 @@
 				high = scale * (z[z.length - 1] - z[0] + dz);
 			svg.selectAll("*").remove();
 			svg.attr("viewBox", `0 0 ${edge + data.quantities.length * (wide + gap)} ${top + high + 74}`);
-			this.caption.textContent = `Clouds at ${report.number(100 * data.strains[state], 3)} %, section along ${report.number(data.azimuth, 3)}\u00b0 from x`;
+			this.caption.textContent = `Clouds at ${report.told(this.run, data.strains[state])}, section along ${report.number(data.azimuth, 3)}\u00b0 from x`;
 			svg.attr(
 				"aria-label",
 				`${this.caption.textContent}: ${data.quantities.map((one) => `${one.label} ${report.number(one.range[0], 3)} to ${report.number(one.range[1], 3)}`).join(", ")}`,
@@ -118,7 +118,7 @@
 
 	class Profile {
 		constructor(parent, run) {
-			Object.assign(this, { data: run.profile, state: 0 });
+			Object.assign(this, { run, data: run.profile, state: 0 });
 			const { figure, caption } = report.figure(parent, "", `${run.name}-profile`, {
 				svg: () => report.alone(this.svg.node()),
 				csv: () => this.csv(),
@@ -151,7 +151,7 @@
 				"max-width",
 				`${LARGER * (edge + panels.length * (wide + gap))}px`,
 			);
-			this.caption.textContent = `Along the height at ${report.number(100 * data.strains[state], 3)} % (solid) and at the start (dotted); ${data.from}`;
+			this.caption.textContent = `Along the height at ${report.told(this.run, data.strains[state])} (solid) and at the start (dotted); ${data.from}`;
 			svg.attr("aria-label", this.caption.textContent);
 			const up = d3
 				.scaleLinear()
@@ -224,7 +224,7 @@
 				names = ["height", "radius", "axial", "radial"].filter((name) => data[name]);
 			const units = { height: "mm", radius: "mm", axial: "kPa", radial: "kPa" };
 			const rows = data.strains.flatMap((strain, k) => data.height[k].map((_, i) => [strain, ...names.map((name) => data[name][k][i])]));
-			return report.csv(["axial_strain [-]", ...names.map((name) => `${name} [${units[name]}]`)], rows);
+			return report.csv([this.run.stages ? "time [s]" : "axial_strain [-]", ...names.map((name) => `${name} [${units[name]}]`)], rows);
 		}
 	}
 	Object.assign(report, { Clouds, Profile });

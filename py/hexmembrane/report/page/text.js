@@ -63,6 +63,13 @@
 			...(content.runs.length > 1 ? [element("h3", {}, run.name)] : []),
 			...(run.summary.length ? [facts] : []),
 			table(["check", "verdict", "number", "limit", "what it is"], rows),
+			...run.apart.flatMap(({ name, rows: numbers }) => [
+				element("h3", {}, `Against the laboratory's ${name}`),
+				table(
+					["number, up to the strain that both reach", "laboratory", "test"],
+					numbers.map((cells) => row(...cells)),
+				),
+			]),
 		);
 	};
 
