@@ -16,8 +16,6 @@ set -euo pipefail
 . "$setupDir/lammps.sh"
 # shellcheck source=scripts/setup.d/browser.sh
 . "$setupDir/browser.sh"
-# shellcheck source=scripts/setup.d/packager.sh
-. "$setupDir/packager.sh"
 
 # Where YADE comes from: sets host (native or root), yadeSource and entry.
 chooseHost() {
