@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The plain YADE scripts of examples/scripts, each in its short form (SHORT), one after the other in one YADE as scripts/yade starts it."""
+"""The plain YADE scripts of examples/scripts, each in its short form (SHORT), as scripts/yade starts it: one after the other in one YADE, and views alone."""
 
 import os
 import pathlib
@@ -56,10 +56,13 @@ def said(tmp_path_factory):
 	"""What each script has printed, by its name."""
 	driver = tmp_path_factory.mktemp("scripts") / "driver.py"
 	driver.write_text(DRIVER)
-	result = run(SETUP / "withoutPorts.py", "-n", "-x", driver, *(SCRIPTS / f"{name}.py" for name in SAYS))
-	parts = re.split(r"^=== (\w+)(?:\.py)?\n", result.stdout, flags=re.MULTILINE)
-	found = dict(zip(parts[1::2], parts[2::2]))
-	assert result.returncode == 0 and "end" in found, list(found)[-1:] + [result.stderr[-2000:]]
+	found = {}
+	# YADE's VTKRecorder with "intr" ends in VTK, at a null table of offsets, after an O.load in the same process; the same scene alone is written
+	for names in ([name for name in SAYS if name != "views"], ["views"]):
+		result = run(SETUP / "withoutPorts.py", "-n", "-x", driver, *(SCRIPTS / f"{name}.py" for name in names))
+		parts = re.split(r"^=== (\w+)(?:\.py)?\n", result.stdout, flags=re.MULTILINE)
+		found.update(zip(parts[1::2], parts[2::2]))
+		assert result.returncode == 0 and parts[-2:-1] == ["end"], list(found)[-1:] + [result.stderr[-2000:]]
 	return found
 
 
