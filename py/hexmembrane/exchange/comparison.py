@@ -166,7 +166,7 @@ def _make(state, shown, taken, before, sign):
 	first, now = state.contacts, shown.contacts
 	centres = dict(zip(state.balls["id"].tolist(), zip(state.balls.vectors().tolist(), state.balls["r"].tolist())))
 	_, shear = scenes.split(first)
-	moments = numpy.nan_to_num(first.vectors("m"))
+	moments, normals = numpy.nan_to_num(first.vectors("m")), first.vectors("n")
 	pairs, plates = [], []
 	for place in taken:
 		old = before[place]
@@ -174,7 +174,7 @@ def _make(state, shown, taken, before, sign):
 		if first["kind"][old] == tables.BALL_BALL:
 			pairs.append((one, bodies[first["end2"][old]]))
 		else:
-			plates.append(scenes.plate(*centres[first["end1"][old]], first.vectors("n")[old], first["gap"][old], material))
+			plates.append(scenes.plate(*centres[first["end1"][old]], normals[old], first["gap"][old], material))
 			pairs.append((one, len(O.bodies) + len(plates) - 1))
 	O.bodies.append(plates)
 	contacts = [(utils.createInteraction(one, two), one, two) for one, two in pairs]
@@ -194,7 +194,7 @@ def _advance(state, then, taken, contacts):
 	"""Bodies to where they are one cycle later, with the velocities that took them there."""
 	O.dt = then.contacts.number("timestep")
 	balls, table = then.balls, then.contacts
-	places, velocities, spins = balls.vectors(), balls.vectors("v"), balls.vectors("w")
+	places, velocities, spins, normals = balls.vectors(), balls.vectors("v"), balls.vectors("w"), table.vectors("n")
 	for values, name in ((velocities, "vx, vy, vz"), (spins, "wx, wy, wz")):
 		if numpy.isnan(values).any():
 			raise ConfigError("balls.csv", str(then.folder), f"has balls without {name}", "export velocities and spins")
@@ -206,7 +206,7 @@ def _advance(state, then, taken, contacts):
 	for place, (_, _, other) in zip(taken, contacts):
 		if table["kind"][place] == tables.BALL_FACET:
 			k = rows[table["end1"][place]]
-			scenes.placePlate(O.bodies[other], places[k], balls["r"][k], table.vectors("n")[place], table["gap"][place])
+			scenes.placePlate(O.bodies[other], places[k], balls["r"][k], normals[place], table["gap"][place])
 			O.bodies[other].state.vel = yade.Vector3(*walls.get(table["end2"][place], (0, 0, 0)))
 
 
