@@ -167,6 +167,8 @@ def main(name):
 	with open(job.folder / "lock", "wb") as lock:
 		try:
 			fcntl.flock(lock, fcntl.LOCK_EX)
+			if (job.folder / "result.json").is_file():
+				return 0  # another job of a queue, which was waited for, has done it
 			result = job.run()
 		except Stopped:
 			return STOPPED

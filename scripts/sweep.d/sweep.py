@@ -4,6 +4,7 @@
 import argparse
 import contextlib
 import fcntl
+import importlib.metadata
 import os
 import pathlib
 import shutil
@@ -18,6 +19,7 @@ import archive  # noqa: E402
 import job
 import plan as plans
 import results
+import slurm
 import studyfile
 from hexmembrane.configuration import ConfigError
 from hexmembrane.report import page
@@ -82,7 +84,7 @@ def _snakemake(arguments):
 	command += ["--rerun-triggers", "mtime", "--restart-times", str(_RESTARTS), "--scheduler", "greedy", "--latency-wait", "10" if local else "60", "--nocolor"]
 	command += ["--cores", str(arguments.cores)] if local else ["--jobs", str(arguments.cores)]
 	if arguments.slurm:
-		command.append("--slurm")
+		command += slurm.options(importlib.metadata.version("snakemake"))
 	if arguments.profile:
 		command += ["--profile", os.path.abspath(arguments.profile)]
 	return [*command, *arguments.snakemake]
@@ -103,6 +105,8 @@ def _run(plan, folder, arguments):
 	weights = {name: found["seconds"] for name, found in plan["jobs"].items()}
 	total = sum(weights.values())
 	environment = {**os.environ, "PYTHONWARNINGS": "ignore"}
+	if arguments.slurm:
+		slurm.cancel(folder)  # of a call that was killed
 	if not arguments.slurm and not arguments.profile:
 		environment[job.RUNNER] = str(os.getpid())
 	with open(folder / LOG, "ab") as log, Progress("sweep") as progress:
@@ -124,6 +128,8 @@ def _run(plan, folder, arguments):
 		finally:
 			if child.poll() is None:
 				_end(child)
+			if arguments.slurm:
+				slurm.cancel(folder)
 
 
 def lock(folder):
@@ -156,7 +162,12 @@ def _tell(table, folder, say):
 
 
 def advance(plan, inputs, folder, arguments, say):
-	"""Write a plan into its folder, whose lock the caller holds, and run what has not been run; nothing is gathered."""
+	"""Write a plan into its folder, whose lock the caller holds, and run what has not been run; nothing is gathered.
+
+	:raises ConfigError: jobs are to go to a queue that is not there.
+	"""
+	if arguments.slurm and slurm.version() is None:
+		raise ConfigError("--slurm", "sbatch", "is not found or does not answer on this machine", "call it where jobs are submitted, such as a cluster's login node, or leave --slurm out")
 	plans.write(plan, inputs, folder)
 	if announce(plan, folder, arguments.cores, say):
 		_run(plan, folder, arguments)
