@@ -11,6 +11,7 @@ import json
 import os
 import pathlib
 import platform
+import resource
 import shutil
 import signal
 import subprocess
@@ -143,6 +144,7 @@ class Job:
 
 	def result(self, status, error, attempts, seconds):
 		product, made = self.test / PRODUCTS[self.stage], {}
+		ended = resource.getrusage(resource.RUSAGE_CHILDREN)
 		if status == "done":
 			made = yaml.safe_load((self.test / "config.yaml").read_text(encoding="utf-8"))["made"]
 			made = {name: value for name, value in made.items() if isinstance(value, (str, int))}
@@ -152,6 +154,7 @@ class Job:
 			"failed_in": self.stage if status == "failed" else "",
 			"attempts": attempts,
 			"seconds": round(seconds, 2),
+			"processor_seconds": round(ended.ru_utime + ended.ru_stime, 2),
 			"bytes": product.stat().st_size if product.is_file() else 0,
 			"host": platform.node(),
 			"processor": processor(),

@@ -139,7 +139,7 @@ def gather(plan, folder):
 	facts = {
 		"date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
 		"study": plan["study"],
-		"processor_hours": round(sum(found["seconds"] for found in results.values() if found) / 3600, 4),
+		"processor_hours": round(sum(found.get("processor_seconds", found["seconds"]) for found in results.values() if found) / 3600, 4),
 		"made_by": _unlike({key: value for key, value in found["made"].items() if key != "date"} for found in results.values() if found),
 		"machines": _unlike({"host": found["host"], "processor": found["processor"]} for found in results.values() if found),
 		"stages": results,

@@ -67,11 +67,11 @@ def submit(path):
 	"""Give a job script to the queue, from the study's folder; the job's number."""
 	text = pathlib.Path(path).read_text(encoding="utf-8")
 	properties = json.loads(re.search(r"^# properties = (.*)$", text, re.MULTILINE)[1])
-	stage = pathlib.Path(properties["output"][0]).parent
+	stage = pathlib.Path(properties["output"][0]).parent.absolute()
 	stage.mkdir(parents=True, exist_ok=True)
 	batch = stage / "batch.sh"
 	batch.write_text(script(text), encoding="utf-8")
-	named = ["--job-name", stage.name, "--output", str(stage / "queue.txt"), "--open-mode=append", "--ntasks=1", "--cpus-per-task=1", "--requeue"]
+	named = ["--job-name", stage.name, "--chdir", os.getcwd(), "--output", str(stage / "slurm.txt"), "--open-mode=append", "--ntasks=1", "--cpus-per-task=1", "--requeue"]
 	code, said, wrong = onHost("sbatch", "--parsable", *named, *_asked(properties["resources"]), str(batch))
 	if code:
 		raise OSError(f"sbatch ended with the code {code}: {wrong}")

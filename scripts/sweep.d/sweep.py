@@ -33,6 +33,8 @@ PAGE, _MOST_TESTS = "report.html", 200
 #: How often Snakemake begins a job anew whose own program was ended.
 _RESTARTS = 3
 _LOOK = 0.3
+#: Words of Snakemake's log that are shown when it has left stages out.
+_LAST_WORDS = 30
 
 
 def addRunning(parser):
@@ -170,7 +172,10 @@ def advance(plan, inputs, folder, arguments, say):
 		raise ConfigError("--slurm", "sbatch", "is not found or does not answer on this machine", "call it where jobs are submitted, such as a cluster's login node, or leave --slurm out")
 	plans.write(plan, inputs, folder)
 	if announce(plan, folder, arguments.cores, say):
-		_run(plan, folder, arguments)
+		code = _run(plan, folder, arguments)
+		if any(plans.result(folder, name) is None for name in plan["jobs"]):
+			lines = (folder / LOG).read_text(encoding="utf-8", errors="replace").split()
+			say(f"Snakemake ended with the code {code}; its last words: {' '.join(lines[-_LAST_WORDS:])}")
 
 
 def _page(plan, folder, say):
