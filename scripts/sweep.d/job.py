@@ -87,10 +87,11 @@ class Job:
 		return before and json.loads((self.base / "stages" / before / "result.json").read_text(encoding="utf-8"))
 
 	def arguments(self, resume):
-		how = ["--until", self.stage]
+		staged = self.stage == "shear" and self.job["config"].get("stages") is not None
+		how = [] if staged else ["--until", self.stage]
 		if resume:
 			how.append("--resume")
-		elif self.stage == "shear":
+		elif self.stage == "shear" and not staged:
 			how += ["--from", str(self.base / "stages" / self.job["before"] / "test" / PRODUCTS["consolidation"])]
 		return [str(self.folder / "job.yaml"), "--out", str(self.test), "--quiet", *how]
 

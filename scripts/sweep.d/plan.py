@@ -6,9 +6,10 @@ import json
 import pathlib
 import shutil
 
-from dependence import CONSOLIDATION, SHEAR, SPECIMEN, contentOf, givesOwnPorosity, names
+from dependence import CONSOLIDATION, SHEAR, SPECIMEN, contentOf, foldersOf, givesOwnPorosity, names
 import studyfile
 from hexmembrane.configuration import ConfigError, toDict
+from hexmembrane.configuration import stages as lists
 from hexmembrane.configuration.lab import Lab
 from hexmembrane.configuration.specimen import PATHS
 from hexmembrane.run import estimate
@@ -48,11 +49,12 @@ def _costs(config, radii):
 	spheres = needs.grains + needs.membrane
 	one, kept = spheres * estimate.SECONDS[config.tier], spheres * (estimate.STATE + 2 * estimate.CHECKPOINT)
 	rows = needs.consolidation / config.output.consolidationSteps, config.output.records
-	return {
+	each = {
 		SPECIMEN: (_START + _PACKING_TIME * len(radii), _PACKING * len(radii)),
 		CONSOLIDATION: (_START + one * needs.consolidation, kept + estimate.ROW * rows[0]),
 		SHEAR: (_START + one * needs.shear, kept + estimate.ROW * rows[1] + _PICTURE),
 	}
+	return {stage: tuple(sum(each[part][k] for part in parts) for k in range(2)) for stage, parts in foldersOf(config).items()}
 
 
 def _keys(config, inputs):
@@ -83,6 +85,8 @@ def make(study):
 				if before:
 					keys["specimen"].update(packing=f"{STAGES_FOLDER}/{stages[SPECIMEN]}/test/packing.txt", gradation=None)
 				jobs[name] = {"stage": stage, "before": before, "seconds": round(costs[stage][0], 2), "bytes": round(costs[stage][1]), "config": keys}
+				if stage == SHEAR:
+					jobs[name]["rows"] = list(lists.plan(run.config)[-1].chain)
 			before = name
 		runs.append({"name": run.name, "values": run.values, "seed": run.seed, "stages": stages})
 	return {"format": FORMAT, "title": study.title, "study": study.source, "axes": study.axes, "attempts": study.attempts, "runs": runs, "jobs": jobs}, inputs
