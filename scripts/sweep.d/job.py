@@ -104,7 +104,11 @@ class Job:
 		threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
 		environment = {**os.environ, **threads, "PYTHONPATH": str(MAIN.parent.parent)}
 		said = self.folder / "log.txt"
+		again = said.exists()
 		with open(said, "ab") as log:
+			if again:
+				log.write(f"once more: {' '.join(self.arguments(resume)[1:])}\n".encode())
+				log.flush()
 			begun = log.tell()
 			child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment, preexec_fn=dieWithParent)
 			try:
