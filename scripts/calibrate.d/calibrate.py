@@ -148,7 +148,8 @@ def announce(calibration, cores, say):
 	seconds = calibration.generations * sum(job["seconds"] for job in plan["jobs"].values())
 	count = calibration.generations * len(plan["runs"])
 	say(f"{calibration.title}: {calibration.generations} generations of {calibration.samples} sets, {len(calibration.tests)} curves, {len(calibration.seeds)} packings: at most {count} tests")
-	say(f"about {seconds / 3600:.2g} core hours, {clock(seconds / cores)} on {cores} cores")
+	hours = sweep.coreHours(seconds)
+	say(f"about {hours:.2g} core hours, {clock(3600 * hours / cores)} on {cores} cores")
 
 
 def main(argv):

@@ -17,10 +17,12 @@ from hexmembrane.scene import accuracy, specimen
 
 FORMAT = 1
 NAME, STAGES_FOLDER, INPUTS, RESULT = "plan.json", "stages", "inputs", "result.json"
-#: Start of YADE, picture and files of a stage [s].
-_START = 4.0
-#: Time [s] and bytes of a grain that is packed; bytes of a picture.
-_PACKING_TIME, _PACKING, _PICTURE = 2e-3, 90, 150000
+#: Processor time [s] of a stage's start, and of the start of scripts/sweep itself, both on the machine that these and estimate.STEP are of.
+_START, SWEEP_START = 4.0, 3.5
+#: Time [s] of a grain that is packed, of a picture, of a row, of a checkpoint, of a search for bands among 1,200 grains, and of a replicate of one there.
+_PACKING_TIME, _PICTURE_TIME, _ROW_TIME, _CHECKPOINT_TIME, _BANDS_TIME, _REPLICATE_TIME = 2e-3, 1.0, 3e-3, 0.02, 0.25, 0.01
+#: Bytes of a grain that is packed, of a picture.
+_PACKING, _PICTURE = 90, 150000
 
 
 def _settled(config):
@@ -47,14 +49,25 @@ def _costs(config, radii):
 	needs = estimate.Estimate.of(config, radii)
 	needs.require(config, estimate.Machine.here())
 	spheres = needs.grains + needs.membrane
-	one, kept = spheres * estimate.SECONDS[config.tier], spheres * (estimate.STATE + 2 * estimate.CHECKPOINT)
-	rows = needs.consolidation / config.output.consolidationSteps, config.output.records
+	one, kept = estimate.stepTime(config.tier, needs.grains, needs.membrane), spheres * (estimate.STATE + 2 * estimate.CHECKPOINT)
+	rows = needs.consolidation / config.output.consolidationSteps, sum(stage.records for stage in lists.plan(config))
+	row = _ROW_TIME + _CHECKPOINT_TIME / config.output.checkpointEvery
 	each = {
 		SPECIMEN: (_START + _PACKING_TIME * len(radii), _PACKING * len(radii)),
-		CONSOLIDATION: (_START + one * needs.consolidation, kept + estimate.ROW * rows[0]),
-		SHEAR: (_START + one * needs.shear, kept + estimate.ROW * rows[1] + _PICTURE),
+		CONSOLIDATION: (_START + one * needs.consolidation + row * rows[0], kept + estimate.ROW * rows[0]),
+		SHEAR: (_START + one * needs.shear + row * rows[1] + _PICTURE_TIME + _bandsTime(config, needs.grains), kept + estimate.ROW * rows[1] + _PICTURE),
 	}
-	return {stage: tuple(sum(each[part][k] for part in parts) for k in range(2)) for stage, parts in foldersOf(config).items()}
+	# a list of stages starts once
+	return {
+		stage: (sum(each[part][0] for part in parts) - _START * (len(parts) - 1), sum(each[part][1] for part in parts)) for stage, parts in foldersOf(config).items()
+	}
+
+
+def _bandsTime(config, grains):
+	"""Processor time [s] of the search for bands in a test."""
+	keys = config.measure
+	steps = config.shear.strain / keys.step if keys.bands else 0
+	return steps * (_BANDS_TIME + _REPLICATE_TIME * keys.replicates) * (0.5 + grains / 2400)
 
 
 def _keys(config, inputs):

@@ -26,6 +26,8 @@ from hexmembrane.report import page
 from hexmembrane.report.libraries import LibraryError
 from hexmembrane.run.progress import Progress, clock
 
+#: Processor time [s] that this program has taken to start; bounds of its ratio to what the estimates are of.
+_STARTED, _SLOWEST = time.process_time(), (0.3, 5.0)
 HERE = pathlib.Path(__file__).resolve().parent
 LOG = "snakemake.log"
 #: The study's page, and how many tests it has at most: each has curves of its own there.
@@ -66,6 +68,11 @@ def _size(count):
 	return f"{count / 1e9:.2g} GB" if count >= 1e9 else f"{max(count, 1e5) / 1e6:.2g} MB"
 
 
+def coreHours(seconds):
+	"""Core hours of estimated seconds on this machine as it is now: it starts a stage as fast or slowly as it has started this program."""
+	return min(max(_STARTED / plans.SWEEP_START, _SLOWEST[0]), _SLOWEST[1]) * seconds / 3600
+
+
 def announce(plan, folder, cores, say):
 	"""Say what there is to do and what it will cost; whether there is anything."""
 	left = {name: found for name, found in plan["jobs"].items() if plans.result(folder, name) is None}
@@ -74,7 +81,8 @@ def announce(plan, folder, cores, say):
 	seconds = sum(found["seconds"] for found in left.values())
 	longest = max((found["seconds"] for found in left.values()), default=0)
 	size, free = sum(found["bytes"] for found in left.values()), shutil.disk_usage(folder if folder.exists() else pathlib.Path.cwd()).free
-	say(f"to do: {len(left)} stages, about {seconds / 3600:.2g} core hours, {clock(max(seconds / cores, longest))} on {cores} cores, {_size(size)} on the disk of {_size(free)} free")
+	hours = coreHours(seconds), coreHours(max(seconds / cores, longest))
+	say(f"to do: {len(left)} stages, about {hours[0]:.2g} core hours, {clock(3600 * hours[1])} on {cores} cores, {_size(size)} on the disk of {_size(free)} free")
 	if size > free:
 		say("WARNING: the disk will be full before the study is done; fix: --out on another one")
 	return bool(left)
@@ -171,8 +179,11 @@ def advance(plan, inputs, folder, arguments, say):
 	if arguments.slurm and slurm.version() is None:
 		raise ConfigError("--slurm", "sbatch", "is not found or does not answer on this machine", "call it where jobs are submitted, such as a cluster's login node, or leave --slurm out")
 	plans.write(plan, inputs, folder)
+	before = {name for name in plan["jobs"] if plans.result(folder, name)}
 	if announce(plan, folder, arguments.cores, say):
 		code = _run(plan, folder, arguments)
+		took = [found for name in set(plan["jobs"]) - before if (found := plans.result(folder, name))]
+		say(f"took {sum(found['processor_seconds'] for found in took) / 3600:.2g} core hours for {len(took)} stages")
 		if any(plans.result(folder, name) is None for name in plan["jobs"]):
 			lines = (folder / LOG).read_text(encoding="utf-8", errors="replace").split()
 			say(f"Snakemake ended with the code {code}; its last words: {' '.join(lines[-_LAST_WORDS:])}")
