@@ -7,7 +7,7 @@
 chooseSlurm() {
 	slurmPlugins=/usr/lib/x86_64-linux-gnu/slurm-wlm
 	if [[ $host == native ]]; then
-		slurm=env
+		slurm="env"
 		[[ -n $(PATH=$PATH:/usr/sbin command -v slurmctld) && -n $(PATH=$PATH:/usr/sbin command -v munged) ]] || die "there is no slurmctld or munged: the queue that is tried is Debian's Slurm." \
 			"fix: apt-get install --no-install-recommends slurm-wlm munge"
 	else

@@ -107,12 +107,14 @@ def _means(plan, rows):
 
 
 def _writeRecords(plan, rows, path):
-	"""All records by run, as HDF5: a group a run with the axes as attributes, a dataset a column with its unit."""
+	"""All records by run, as HDF5: a group a run with the axes as attributes, a dataset a column with its unit.
+
+	The file is made in memory: HDF5 does not get over a disk that is full, and ends the process by crashing.
+	"""
 	import h5py
 
 	units = {column.name: column.unit for column in COLUMNS}
-	part = path.with_name(path.name + ".part")
-	with h5py.File(part, "w") as file:
+	with h5py.File(path, "w", driver="core", backing_store=False) as file:
 		file.attrs["title"], file.attrs["plan"] = plan["title"], json.dumps(plan["study"], default=str)
 		for run, said, found, table in rows:
 			place = file.create_group(run["name"])
@@ -120,6 +122,10 @@ def _writeRecords(plan, rows, path):
 			place.attrs.update(found or {})
 			for name, column in (table or {}).items():
 				place.create_dataset(name, data=column, compression="gzip").attrs["unit"] = units.get(name, "")
+		file.flush()
+		image = file.id.get_file_image()
+	part = path.with_name(path.name + ".part")
+	part.write_bytes(image)
 	part.replace(path)
 
 

@@ -217,9 +217,15 @@ def execute(plan, inputs, folder, arguments, say):
 			with open(folder / results.RUNS, encoding="utf-8", newline="") as file:
 				return _tell(list(results.csv.reader(file)), folder, say)
 		advance(plan, inputs, folder, arguments, say)
-		table = results.gather(plan, folder)
-		archive.write(plan, folder)
-		_page(plan, folder, say)
+		try:
+			table = results.gather(plan, folder)
+			archive.write(plan, folder)
+			_page(plan, folder, say)
+		except OSError as error:
+			for run in plan["runs"]:
+				say(f"run {run['name']}: {results.status(folder, run)}")
+			say(f"the tables cannot be written ({error}); fix: make room, then the same command with --again goes on")
+			return 1
 		return _tell(table, folder, say)
 
 
