@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Studies of tests with a list of stages: packings are shared, the list is one job, and the tables say q at the end of each of its stages."""
 
+import argparse
 import pathlib
 import sys
 
@@ -14,6 +15,7 @@ import job  # noqa: E402
 import plan as plans  # noqa: E402
 import results  # noqa: E402
 import studyfile  # noqa: E402
+import sweep  # noqa: E402
 
 LOOP = [{"kind": "consolidation"}, {"kind": "shear", "strain": 0.01}, {"kind": "unloading", "q": 0.0}, {"kind": "shear"}]
 BASE = {
@@ -61,3 +63,29 @@ def test_tables(plan, tmp_path, monkeypatch):
 	assert list(results.sheared("records.csv", results.stagesOf(plan, plan["runs"][0]))["q"]) == [1.0, 2.0, 0.5, 3.0]
 	assert results._qAfter("records.csv", results.endsOf(plan)) == {"q_after_shear": 2.0, "q_after_unloading": 0.5, "q_after_shear-2": 3.0}
 	assert list(results.quantitiesOf(plan))[-3:] == ["q_after_shear", "q_after_unloading", "q_after_shear-2"]
+
+
+def test_fullDisk(plan, tmp_path, monkeypatch, capsys):
+	"""Tables that cannot be written: all runs are told of, and what to do."""
+	def gather(*_):
+		raise OSError(28, "No space left on device", "records.h5")
+
+	monkeypatch.setattr(sweep, "advance", lambda *_: None)
+	monkeypatch.setattr(results, "gather", gather)
+	code = sweep.execute(plan, {}, tmp_path / "out", argparse.Namespace(again=False), print)
+	said = capsys.readouterr().out
+	assert code == 1 and said.count("missing: specimen has not ended") == 4 and "No space left on device: 'records.h5'); fix: make room" in said
+
+
+def test_times(plan, tmp_path):
+	"""A list starts once; bands, rows and the reference tier's steps cost more."""
+	def seconds(**changes):
+		config = derived(Config.of(BASE, tmp_path), changes)
+		return plans._costs(config, results.numpy.full(60, 3e-3))
+
+	base = seconds()
+	once = seconds(stages=None)
+	assert base["shear"][0] < once["consolidation"][0] + once["shear"][0] - 3
+	assert seconds(measure={"bands": True})["shear"][0] > base["shear"][0] + 0.2
+	assert seconds(output={"records": 1000})["shear"][0] > base["shear"][0] + 2
+	assert seconds(tier="reference")["shear"][0] > base["shear"][0] + 2
