@@ -40,7 +40,7 @@ def _settled(config):
 
 
 def _costs(config, radii):
-	"""{stage: (processor time [s], bytes on the disk)}, as a test's own estimate has them.
+	"""{stage: (processor time [s], bytes on the disk, processor time of the steps in it [s])}, as a test's own estimate has them.
 
 	:raises ConfigError: the test is beyond this machine, or not sound.
 	"""
@@ -53,14 +53,15 @@ def _costs(config, radii):
 	rows = needs.consolidation / config.output.consolidationSteps, sum(stage.records for stage in lists.plan(config))
 	row = _ROW_TIME + _CHECKPOINT_TIME / config.output.checkpointEvery
 	each = {
-		SPECIMEN: (_START + _PACKING_TIME * len(radii), _PACKING * len(radii)),
-		CONSOLIDATION: (_START + one * needs.consolidation + row * rows[0], kept + estimate.ROW * rows[0]),
-		SHEAR: (_START + one * needs.shear + row * rows[1] + _PICTURE_TIME + _bandsTime(config, needs.grains), kept + estimate.ROW * rows[1] + _PICTURE),
+		SPECIMEN: (_START + _PACKING_TIME * len(radii), _PACKING * len(radii), 0.0),
+		CONSOLIDATION: (_START + one * needs.consolidation + row * rows[0], kept + estimate.ROW * rows[0], one * needs.consolidation),
+		SHEAR: (_START + one * needs.shear + row * rows[1] + _PICTURE_TIME + _bandsTime(config, needs.grains), kept + estimate.ROW * rows[1] + _PICTURE, one * needs.shear),
 	}
-	# a list of stages starts once
-	return {
-		stage: (sum(each[part][0] for part in parts) - _START * (len(parts) - 1), sum(each[part][1] for part in parts)) for stage, parts in foldersOf(config).items()
-	}
+	made = {}
+	for stage, parts in foldersOf(config).items():
+		time, size, steps = (sum(each[part][k] for part in parts) for k in range(3))
+		made[stage] = time - _START * (len(parts) - 1), size, steps  # a list of stages starts once
+	return made
 
 
 def _bandsTime(config, grains):
@@ -98,6 +99,7 @@ def make(study):
 				if before:
 					keys["specimen"].update(packing=f"{STAGES_FOLDER}/{stages[SPECIMEN]}/test/packing.txt", gradation=None)
 				jobs[name] = {"stage": stage, "before": before, "seconds": round(costs[stage][0], 2), "bytes": round(costs[stage][1]), "config": keys}
+				jobs[name]["stepping"] = round(costs[stage][2], 2)
 				if stage == SHEAR:
 					jobs[name]["rows"] = list(lists.plan(run.config)[-1].chain)
 			before = name
