@@ -127,14 +127,14 @@ def gather(plan, folder):
 
 	folder = pathlib.Path(folder)
 	rows = list(_rows(plan, folder))
-	table = [["run", *plan["axes"], "seed", "status", *headers().values()]]
+	table = [["run", *plan["axes"], "seed", "status", "folder", *headers().values()]]
 	for run, said, found, _ in rows:
 		cells = [repr(float(found[name])) for name in QUANTITIES] if found else [""] * len(QUANTITIES)
-		table.append([run["name"], *(run["values"][key] for key in plan["axes"]), run["seed"], said, *cells])
+		table.append([run["name"], *(run["values"][key] for key in plan["axes"]), run["seed"], said, recordsOf("", run).parent, *cells])
 	writeText(folder / RUNS, _csv(table))
 	writeText(folder / MEANS, _csv(_means(plan, rows)))
 	_writeRecords(plan, rows, folder / RECORDS)
-	figure.draw(plan, rows, folder / "study.png")
+	figure.drawAll(plan, rows, folder)
 	results = {name: result(folder, name) for name in plan["jobs"]}
 	facts = {
 		"date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
