@@ -1,10 +1,13 @@
 // hexmembrane: flexible-membrane triaxial tests for YADE. SPDX-License-Identifier: GPL-2.0-or-later
+#include "kernels/base/Check.hpp"
 #include "kernels/contact/ParallelBond.hpp"
 
 #include "kernels/compact/BondTable.hpp"
 
 #include "Support.hpp"
 #include "oracle/ParallelBondReference.hpp"
+
+#include <map>
 
 namespace {
 

@@ -96,7 +96,7 @@ double CriticalStep::compute(double tolerance, int most) const
 			}
 			const double along = s.normal.dot(slide);
 			const Vec3 force = s.law.kn * along * s.normal + s.law.ks * (slide - along * s.normal); // on i, pulling it after j
-			const Vec3 moment = answerTo(turn, s.law, s.normal);
+			const Vec3 moment = answerTo(turn, s.law, s.normal) + s.twist * turn.dot(s.normal) * s.normal;
 			f[s.i] += force;
 			t[s.i] += s.arm1.cross(force) + moment;
 			if (s.j < 0) continue;

@@ -3,8 +3,11 @@
 
 import abc
 
+from hexmembrane.configuration.cement import CONSOLIDATED
 from hexmembrane.run.estimate import RISE
+from hexmembrane.run.progress import tell
 from hexmembrane.scene import timestep
+from hexmembrane.scene.cement import bondGrains
 
 #: Parts that a smooth change of the pressure is divided into; each is 1 % of the time.
 RAMP_PARTS = 100
@@ -57,3 +60,13 @@ class Stage(abc.ABC):
 		test.scene.holdRadialLoad()
 		test.scene.setFriction(self.config.specimen.friction, self.config.platens.friction, self.config.contacts.frictions())
 		test.scene.setTimeLimit(None)
+		self._bond(CONSOLIDATED)
+
+	def _bond(self, moment):
+		"""Bond the grains where this is the moment for it. :raises StageError: it cannot be done."""
+		if self.config.cement.when != moment:
+			return
+		try:
+			bondGrains(self.config, self.test.scene, lambda text: None if self.test.quiet else tell(text))
+		except ValueError as error:
+			raise StageError(str(error)) from None
