@@ -34,7 +34,7 @@ hexmembrane::Place placeOf(const Scene& scene, Body::id_t id)
 	return {(*scene.bodies)[id]->state->pos, sphere.radius};
 }
 
-void requireStrength(const char* name, Real strength)
+void requireCementStrength(const char* name, Real strength)
 {
 	if (math::isnan(strength)) hexmembrane::reject(engineName + "." + name, strength, "is not given", "a number >= 0 in Pa, or inf");
 	if (!(strength >= 0)) hexmembrane::reject(engineName + "." + name, strength, "a strength must not be negative", "a number >= 0 in Pa, or inf");
@@ -72,8 +72,8 @@ void GrainBonds::requireStiffness() const
 
 void GrainBonds::requireStrengths() const
 {
-	requireStrength("tensileStrength", tensileStrength);
-	requireStrength("cohesion", cohesion);
+	requireCementStrength("tensileStrength", tensileStrength);
+	requireCementStrength("cohesion", cohesion);
 	if (!(frictionAngle >= 0 && frictionAngle < M_PI / 2))
 		hexmembrane::reject("GrainBonds.frictionAngle", frictionAngle, "is out of range", "an angle from 0 to below pi/2 in rad");
 	if (!(momentFactor >= 0 && momentFactor <= 1)) hexmembrane::reject("GrainBonds.momentFactor", momentFactor, "is out of range", "a number from 0 to 1");

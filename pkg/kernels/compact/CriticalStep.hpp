@@ -24,6 +24,7 @@ public:
 	{
 		add(i, j, normal, arm1 * normal, -arm2 * normal, law);
 		springs.back().twist = twist;
+		turnStart = 1 / arm1;
 	}
 	/// Gives the membrane's particles further forces that are linear in their displacements, wrapped rows of `tube`, and that have an energy.
 	/// \param addAnswer adds them to its second argument
@@ -48,6 +49,7 @@ private:
 	void addSheet(const std::vector<Vec3>& x, std::vector<Vec3>& force) const;
 
 	std::vector<Spring> springs;
+	double turnStart = 0; ///< size of the rotations to start from (1/m): joints can turn spheres without any shear that would set them going
 	HexStencil sheet;
 	Answer answer;
 	std::vector<double> inverseMass, inverseInertia; ///< 0 for what does not move
