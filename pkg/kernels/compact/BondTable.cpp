@@ -104,13 +104,13 @@ void BondTable::step(const Place* places, const Motion* motions, double dt, cons
 	list();
 	const long count = long(bonds.size()), loaded = long(rows.size());
 	int broken = 0;
-#pragma omp parallel for schedule(static) reduction(+ : broken)
+#pragma omp parallel for schedule(static) reduction(+ : broken) if (count > worthThreads)
 	for (long b = 0; b < count; ++b) {
 		const auto [i, j] = pairs[b];
 		breaks[b] = advance(bonds[b], places[i], places[j], motions[i], motions[j], dt, strength, actions[b]);
 		broken += breaks[b] != BondBreak::none;
 	}
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (loaded > worthThreads)
 	for (long r = 0; r < loaded; ++r) {
 		Load sum = noLoad();
 		for (int e = start[r]; e < start[r + 1]; ++e) {

@@ -16,7 +16,7 @@ public:
 		int id1, id2; ///< of its spheres
 		ParallelBond<double> made;
 		ParallelLoads<double> loads;
-		Vec3 centre;    ///< of the first sphere when the loads were computed (m)
+		Vec3 centre;       ///< of the first sphere when the loads were computed (m)
 		double difference; ///< R1 - R2 (m)
 		bool begun; ///< false: no step yet, nothing has moved since it was made
 	};
@@ -42,7 +42,7 @@ public:
 	void forEachLoad(Visit&& visit) const
 	{
 		const long count = long(rows.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (count > worthThreads)
 		for (long r = 0; r < count; ++r) visit(rows[r], summed[r]);
 	}
 
@@ -54,6 +54,7 @@ public:
 	double energy() const;
 
 private:
+	static constexpr long worthThreads = 500; ///< fewer bonds or spheres are done before threads have met
 	/// What a bond does to its spheres.
 	struct Action {
 		Vec3 force, torque1, torque2; ///< the force on the second one

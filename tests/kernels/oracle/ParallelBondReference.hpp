@@ -42,7 +42,7 @@ struct SpringDisc {
 				sum.moment += area * arm.cross(stress);
 				sum.energy -= 0.5 * area * stress.dot(displacement + turn.cross(arm));
 			}
-		for (int a = 0; a < 100000; ++a) sum.tension = std::max(sum.tension, -spring(radius, 2 * M_PI * a / 100000).second.dot(normal));
+		for (int a = 0; a < 10000; ++a) sum.tension = std::max(sum.tension, -spring(radius, 2 * M_PI * a / 10000).second.dot(normal));
 		return sum;
 	}
 };
