@@ -13,7 +13,7 @@ from hexmembrane.output import records
 from tinyTest import TINY, configure
 
 EXAMPLES = pathlib.Path(__file__).parents[2] / "examples"
-CEMENT = {"emod": 2e7, "kratio": 3, "tensileStrength": 2e5, "cohesion": 3e5, "frictionAngle": 30}
+CEMENT = {"emod": 2e7, "kratio": 3, "tensileStrength": 4e4, "cohesion": 6e4, "frictionAngle": 30}
 ROUGH = {"consolidation": {"friction": 0.2, "unbalanced": 0.05, "tolerance": 0.3}}
 
 
@@ -27,7 +27,7 @@ def made(folder, **cement):
 	[
 		({"kratio": None}, "cement.kratio = None: the stiffness is given in half"),
 		({"kn": 1e12, "ks": 1e12}, "cement.kn = 1000000000000.0: the stiffness is given twice"),
-		({"emod": None, "kratio": None}, "cement.tensileStrength = 200000.0: there is no cement without a stiffness"),
+		({"emod": None, "kratio": None}, "cement.tensileStrength = 40000.0: there is no cement without a stiffness"),
 		({"cohesion": None}, "cement.cohesion = None: is missing"),
 		({"tensileStrength": -1.0}, "cement.tensileStrength = -1.0: is out of range"),
 		({"frictionAngle": 90}, "cement.frictionAngle = 90: is out of range"),
@@ -74,7 +74,7 @@ def test_cementedSand(O, tmp_path, runHere):
 		found = records.read(tmp_path / tier / "records.csv")
 		bonds, broken = found["cement_bonds"], found["cement_broken_tension"] + found["cement_broken_shear"]
 		assert broken[0] == 0 and 0 < broken[-1] < bonds[0] and (bonds + broken == bonds[0]).all()
-		assert max(found["q"]) > 1.2 * max(plain["q"][numpy.array(plain["stage"]) == "shear"])
+		assert max(found["q"]) > 1.1 * max(plain["q"][numpy.array(plain["stage"]) == "shear"])
 		assert abs(found["energy_error"]).max() < 0.02
 		for name in ("axial", "radial"):
 			assert abs(found[f"soil_{name}"] - found[f"boundary_{name}"] - found[f"inertia_{name}"]).max() < 1e-6 * 1e5
