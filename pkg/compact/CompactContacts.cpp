@@ -210,13 +210,14 @@ Real CompactLoop::criticalTimeStep()
 			step.addSupport(particle, static_cast<int>(std::find(ids.begin(), ids.end(), grain) - ids.begin()), normal, kn);
 		});
 		std::unordered_map<Body::id_t, int> rowOf; // made when there is a joint
-		one->forEachJointSpring([&](Body::id_t first, Body::id_t second, const Vector3r& normal, const std::array<Real, 2>& arms, const JointStiffness& k) {
-			if (rowOf.empty())
-				for (size_t i = 0; i < ids.size(); ++i) rowOf[ids[i]] = static_cast<int>(i);
-			const auto a = rowOf.find(first), b = rowOf.find(second);
-			if (a == rowOf.end() || b == rowOf.end()) return; // the next step refuses it
-			step.addJoint(a->second, b->second, normal, arms[0], arms[1], {k.normal, k.shear, 0, k.bending, 0}, k.twisting);
-		});
+		one->forEachJointSpring(
+		        [&](Body::id_t first, Body::id_t second, const Vector3r& normal, const std::array<Real, 2>& arms, const JointStiffness& k) {
+			        if (rowOf.empty())
+				        for (size_t i = 0; i < ids.size(); ++i) rowOf[ids[i]] = static_cast<int>(i);
+			        const auto a = rowOf.find(first), b = rowOf.find(second);
+			        if (a == rowOf.end() || b == rowOf.end()) return; // the next step refuses it
+			        step.addJoint(a->second, b->second, normal, arms[0], arms[1], {k.normal, k.shear, 0, k.bending, 0}, k.twisting);
+		        });
 	}
 	if (state->sheet.ids)
 		step.setSheet(state->sheet.stencil, [&](const hexmembrane::PaddedRings& displacement, hexmembrane::PaddedRings& sum) {

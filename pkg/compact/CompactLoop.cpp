@@ -78,10 +78,7 @@ public:
 		return {load.load.force + loop.outsideOn[b], load.normalForce, load.normalStiffness, load.count, ""};
 	}
 	Real stiffness(Body::id_t boundary, const Vector3r& along) override { return state.spheres.boundaryContacts[require(boundary)].stiffness(along); }
-	void forEachContact(const VisitContact& visit) override
-	{
-		loop.visitWithEngines(state.spheres.places, state.spheres.shapes(), visit);
-	}
+	void forEachContact(const VisitContact& visit) override { loop.visitWithEngines(state.spheres.places, state.spheres.shapes(), visit); }
 
 private:
 	void takeOver(WorkMeter& meter, const vector<RingRange>& rings) const

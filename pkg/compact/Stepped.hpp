@@ -129,7 +129,8 @@ public:
 	using VisitJointSpring = std::function<void(Body::id_t, Body::id_t, const Vector3r&, const std::array<Real, 2>&, const JointStiffness&)>;
 	virtual void forEachJointSpring(const VisitJointSpring&) const {}
 	//! Calls visit for every contact: those that `own` visits, and those of these engines. A pair with a joint is one contact, with the forces of both.
-	static void forEachContactWith(const vector<shared_ptr<Engine>>& engines, const std::function<void(const VisitContact&)>& own, const VisitContact& visit);
+	static void forEachContactWith(const vector<shared_ptr<Engine>>& engines, const std::function<void(const VisitContact&)>& own,
+	                               const VisitContact& visit);
 	//! Adds their forces to those of `onParticles`, which belong to these bodies (N).
 	void addContactForces(const vector<Body::id_t>& ids, vector<Vector3r>& onParticles) const;
 	//! Calls visit(particle, id of a grain, unit vector from one to the other, kn) for each spring between them: as forEachBond().

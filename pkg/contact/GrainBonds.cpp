@@ -83,7 +83,8 @@ void GrainBonds::restore() const
 {
 	if (savedNumbers.size() != savedSize * savedIds.size())
 		throw std::runtime_error("GrainBonds: the saved bonds are not whole (" + std::to_string(savedIds.size()) + " bonds, " +
-		                         std::to_string(savedNumbers.size()) + " numbers); fix: go on with the version that saved the state, or load another one");
+		                         std::to_string(savedNumbers.size()) +
+		                         " numbers); fix: go on with the version that saved the state, or load another one");
 	for (size_t b = 0; b < savedIds.size(); ++b) table.bonds.push_back(saved(savedIds[b], savedNumbers.data() + savedSize * b));
 }
 
@@ -134,7 +135,8 @@ int GrainBonds::bond(const vector<Body::id_t>& ids, Real gap)
 			if (!have.insert(std::minmax<int>(ids[i], ids[j])).second) continue;
 			const Real length = radii[i] + radii[j], normal = math::isnan(emod) ? kn : emod / length;
 			all.bonds.push_back(BondTable::between(ids[i], ids[j], {centres[i], radii[i]}, {centres[j], radii[j]},
-			                                       radiusMultiplier * std::min(radii[i], radii[j]), normal, math::isnan(emod) ? ks : normal / kratio));
+			                                       radiusMultiplier * std::min(radii[i], radii[j]), normal,
+			                                       math::isnan(emod) ? ks : normal / kratio));
 		}
 	located = -1;
 	return static_cast<int>(all.bonds.size() - before);
@@ -160,7 +162,8 @@ int GrainBonds::release(const vector<Body::id_t>& ids)
 
 void GrainBonds::prepare()
 {
-	if (scene->isPeriodic) throw std::runtime_error("GrainBonds: O.periodic = True: a bond would end at the cell's faces; fix: a scene that is not periodic");
+	if (scene->isPeriodic)
+		throw std::runtime_error("GrainBonds: O.periodic = True: a bond would end at the cell's faces; fix: a scene that is not periodic");
 	if (count() > 0) requireStrengths();
 }
 

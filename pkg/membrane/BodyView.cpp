@@ -239,8 +239,7 @@ MovingRows BodyView::moving(const vector<Body::id_t>& ids)
 	for (const Body::id_t id : ids) {
 		const Body* body = livingBody(*scene.bodies, id);
 		const auto* sphere = body ? dynamic_cast<const Sphere*>(body->shape.get()) : nullptr;
-		if (!sphere)
-			hexmembrane::reject(who + ".ids", int(id), "is bonded, and is no sphere any more", "release() it before it is erased");
+		if (!sphere) hexmembrane::reject(who + ".ids", int(id), "is bonded, and is no sphere any more", "release() it before it is erased");
 		movingPlaces.push_back({body->state->pos, sphere->radius});
 		motions.push_back({body->state->vel, body->state->angVel});
 	}

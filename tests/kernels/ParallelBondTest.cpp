@@ -190,7 +190,8 @@ TEST(ParallelBond, TurnsWithItsBodies)
 		BondedPair pair;
 		pair.move({1e-9, 0, 2e-9}, {0, 1e-6, 2e-6});
 		const ParallelLoads<double> before = pair.table.bonds[0].loads;
-		const Vec3 spin = 2 * pi / (steps * pair.dt) * Vec3(1, -2, 0.5).normalized(), middle = pair.places[0].centre, branch = pair.places[1].centre - middle;
+		const Vec3 spin = 2 * pi / (steps * pair.dt) * Vec3(1, -2, 0.5).normalized(), middle = pair.places[0].centre,
+		           branch = pair.places[1].centre - middle;
 		for (int i = 1; i <= steps; ++i) {
 			const auto turned = [&](double step) { return Vec3(Eigen::AngleAxisd(step * pair.dt * spin.norm(), spin.normalized()) * branch); };
 			pair.places[1].centre = middle + turned(i);
@@ -309,7 +310,9 @@ TEST(ParallelBond, CriticalStepOfEachSpring)
 	const auto square = [&](const LinearLaw<double>& law, double twist) {
 		SphereAssembly flat;
 		flat.setSkin(1e-4);
-		flat.setSpheres({{0, {{0, 0, 0}, r}, {Vec3::Zero(), Vec3::Zero()}, m, inertia, 0, false}, {1, {{0, 0, 2.1e-3}, r}, {Vec3::Zero(), Vec3::Zero()}, m, inertia, 0, false}}, 2);
+		flat.setSpheres({{0, {{0, 0, 0}, r}, {Vec3::Zero(), Vec3::Zero()}, m, inertia, 0, false},
+		                 {1, {{0, 0, 2.1e-3}, r}, {Vec3::Zero(), Vec3::Zero()}, m, inertia, 0, false}},
+		                2);
 		CriticalStep step(flat);
 		step.addJoint(0, 1, {0, 0, 1}, 1.05e-3, 1.05e-3, law, twist);
 		return std::pow(2 / step.compute(1e-9, 100000), 2);

@@ -18,7 +18,7 @@ public:
 		ParallelLoads<double> loads;
 		Vec3 centre;       ///< of the first sphere when the loads were computed (m)
 		double difference; ///< R1 - R2 (m)
-		bool begun; ///< false: no step yet, nothing has moved since it was made
+		bool begun;        ///< false: no step yet, nothing has moved since it was made
 	};
 	/// A bond between two spheres as they are, without loads. \param radius of the disc (m) \param kn, ks stiffness by area (N/m3)
 	static Bond between(int id1, int id2, const Place& first, const Place& second, double radius, double kn, double ks);

@@ -81,7 +81,8 @@ inline double bondEnergy(const ParallelBond<double>& bond, const ParallelLoads<d
 ///   N = kn A (rest - distance)     Fs -> Fs - ks A slide     Mb -> Mb - kn I bend     Mt -> Mt - ks J twist
 /// \param distance of the centres now (m) \param normal now \param motion of the bodies in the step, the velocity that of the contact point
 template <class V>
-HEXMEMBRANE_INLINE void advanceParallel(const ParallelBond<V>& bond, V distance, const Vector<V>& normal, const PairMotion<V>& motion, V dt, ParallelLoads<V>& loads)
+HEXMEMBRANE_INLINE void advanceParallel(const ParallelBond<V>& bond, V distance, const Vector<V>& normal, const PairMotion<V>& motion, V dt,
+                                        ParallelLoads<V>& loads)
 {
 	const V area = bond.area(), inertia = bond.inertia(), spin = dot(motion.spinDifference, normal);
 	const Vector<V> tilt = cross(loads.axis, normal), twist = (0.5 * dt * dot(loads.axis, motion.spinSum)) * loads.axis;

@@ -17,9 +17,9 @@ struct SpringDisc {
 	Vec3 normal;
 
 	struct Result {
-		Vec3 force, moment;     ///< on body 2, about the contact point (N, N m)
+		Vec3 force, moment;      ///< on body 2, about the contact point (N, N m)
 		double tension = -1e300; ///< largest normal stress at the edge, tension positive (Pa)
-		double energy = 0;      ///< of all springs (J)
+		double energy = 0;       ///< of all springs (J)
 	};
 	/// \param displacement of body 2 at the contact point (m) \param turn its rotation (rad), small
 	Result displaced(const Vec3& displacement, const Vec3& turn) const
