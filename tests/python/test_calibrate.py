@@ -89,7 +89,7 @@ def search(folder, **changes):
 	folder.mkdir(exist_ok=True)
 	calibration = calibrationfile.load(write(folder, **changes))
 	out = folder / "out"
-	assert calibrate.calibrate(calibration, out, argparse.Namespace(again=False), lambda text: None) == 0
+	assert calibrate.calibrate(calibration, out, argparse.Namespace(again=False, inside=False), lambda text: None) == 0
 	return out
 
 
