@@ -27,8 +27,9 @@ import sweep
 from hexmembrane.configuration import derived
 from hexmembrane.laboratory.misfit import ofTest
 
-#: Numbers of the laboratory's tests in table1.csv that are predicted, those with a curve first: the calibrated one, the other pressures, other void ratios.
-TESTS = (53, 45, 66, 55, 61, 47, 68, 50, 70, 64, 51, 72)
+#: Numbers of the laboratory's tests in table1.csv that are predicted, those with a curve first: the calibrated one, the other pressures, other void ratios,
+#: membranes of 0.1 and 0.3 mm at 9.8 and 4.9 kPa.
+TESTS = (53, 45, 66, 55, 61, 47, 68, 50, 70, 64, 51, 72, 22, 29, 12, 19)
 CURVES = {45: "curve-49kPa-e0.658", 53: "curve-98kPa-e0.671", 66: "curve-196kPa-e0.677"}
 #: Void ratio and pressure [Pa] of the calibrated test; least and largest void ratio of Toyoura sand; the same of the packer's grains.
 CALIBRATED, PRESSURE, LIMITS, OURS = 0.671, 9.8e4, (0.605, 0.977), (0.710, 1.062)
@@ -39,10 +40,10 @@ FIRST_SEED = 101
 
 
 def laboratory():
-	"""{number: row} of table1.csv, plain numbers: pressure [Pa], void ratio, peak friction angle [deg]."""
+	"""{number: row} of table1.csv, plain numbers: pressure [Pa], void ratio, thickness of the membrane [m], peak friction angle [deg]."""
 	with open(HERE / "lab" / "table1.csv", encoding="utf-8") as file:
 		rows = [[float(cell) for cell in row] for row in list(csv.reader(file))[1:]]
-	return {int(number): {"pressure": 1e3 * pressure, "void ratio": void, "angle": angle} for number, pressure, void, _, angle in rows}
+	return {int(number): {"pressure": 1e3 * pressure, "void ratio": void, "thickness": 1e-3 * thickness, "angle": angle} for number, pressure, void, thickness, angle in rows}
 
 
 def curve(number):
@@ -77,7 +78,8 @@ def study(base, folder, count):
 		test = laboratory()[number]
 		for k, values in enumerate(draws(folder, count)):
 			own = {**values, "specimen.porosity": packed(values["specimen.porosity"], test["void ratio"]), studyfile.SEED: FIRST_SEED + k}
-			own |= {"consolidation.pressure": test["pressure"], "shear.velocity": base.shear.velocity * math.sqrt(test["pressure"] / PRESSURE)}
+			own |= {"consolidation.pressure": test["pressure"], "membrane.thickness": test["thickness"]}
+			own |= {"shear.velocity": base.shear.velocity * math.sqrt(test["pressure"] / PRESSURE)}
 			runs.append(studyfile.Run(f"{number}-{k}", {"test": number}, FIRST_SEED + k, derived(base, studyfile.nested(own))))
 	return studyfile.Study("predictions", ["test"], runs, 2, {})
 
@@ -108,13 +110,13 @@ def ofLaboratory(number):
 
 def tables(found, folder, say):
 	"""``predictions.csv``: a row a condition with the laboratory's numbers, ours with intervals; the picture. ``found``: {number of test: list of series}."""
-	header = ["test", "sigma3 [kPa]", "void ratio [-]", "tests"]
+	header = ["test", "sigma3 [kPa]", "void ratio [-]", "membrane [mm]", "tests"]
 	for name in ("peak friction angle [deg]", *(f"volumetric strain at {100 * strain:g} % [%]" for strain in STRAINS)):
 		header += [f"{name} laboratory", f"{name} ours", f"{name} half width", f"{name} difference"]
 	rows = [header]
 	for number, series in found.items():
 		test = laboratory()[number]
-		row = [number, f"{1e-3 * test['pressure']:g}", test["void ratio"], len(series)]
+		row = [number, f"{1e-3 * test['pressure']:g}", test["void ratio"], f"{1e3 * test['thickness']:g}", len(series)]
 		for there, ours in zip(ofLaboratory(number), zip(*map(numbers, series))):
 			mean, half = interval(ours)
 			row += ["" if math.isnan(value) else f"{value:.2f}" for value in (there, mean, half, mean - there)]
