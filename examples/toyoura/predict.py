@@ -5,7 +5,7 @@ Each draw from the posterior in ``sets.csv`` is one set of parameters and one pa
 same at all conditions. A void ratio of the laboratory goes to the packing's by its relative density: from the calibrated density on, with the slope between
 the void ratios that are the least and the largest of both sands. The velocity goes with the root of the pressure, so the inertial number is one.
 
-A second call goes on. --tables runs nothing: it writes tables and figure of the tests that are done.
+A second call goes on. --tables runs nothing: it writes tables and figure of the tests that are done, of a run that goes on too.
 """
 
 import argparse
@@ -171,16 +171,16 @@ def main(argv):
 		base = calibrationfile.load(HERE / "calibration.yaml").tests["98 kPa"].config
 		wanted, folder = study(base, given.calibration, given.draws), pathlib.Path(given.out)
 		folder.mkdir(parents=True, exist_ok=True)
-		with sweep.lock(folder):
-			if not given.tables:
+		if not given.tables:
+			with sweep.lock(folder):
 				inside.perform(wanted, folder, say)
-			found = {}
-			for one in wanted.runs:
-				if inside.status(folder, one) == "done":
-					found.setdefault(one.values["test"], []).append(ofTest(inside.table(folder, one)))
-				else:
-					say(f"{one.name}: {inside.status(folder, one)}")
-			tables(found, folder, say)
+		found = {}
+		for one in wanted.runs:
+			if inside.status(folder, one) == "done":
+				found.setdefault(one.values["test"], []).append(ofTest(inside.table(folder, one)))
+			else:
+				say(f"{one.name}: {inside.status(folder, one)}")
+		tables(found, folder, say)
 		return 0
 
 	return sweep.guarded(whole)

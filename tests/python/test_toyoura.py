@@ -60,7 +60,7 @@ def test_predictions(tmp_path, monkeypatch):
 	predict.tables(found, tmp_path, lambda text: None)
 	with open(tmp_path / "predictions.csv", encoding="utf-8") as file:
 		rows = list(csv.DictReader(file))
-	assert [int(row["test"]) for row in rows] == list(predict.TESTS[:4]) and float(rows[0]["peak friction angle [deg] laboratory"]) == 42.3
+	assert [int(row["test"]) for row in rows] == list(predict.TESTS[:4]) and float(rows[0]["peak friction angle [deg] laboratory"]) == 43.3
 	assert abs(float(rows[0]["volumetric strain at 10 % [%] ours"]) - 4) < 0.3 and (tmp_path / "predictions.png").is_file()
 
 
