@@ -87,7 +87,7 @@ def study(base, folder, count):
 def numbers(series):
 	"""Peak friction angle [deg], volumetric strain [%] at STRAINS; nan where a test does not reach."""
 	ratio = series["stress_ratio"]
-	even = numpy.arange(0, ratio.strain[-1], SMOOTH / 10)
+	even = numpy.arange(ratio.strain[0], ratio.strain[-1], SMOOTH / 10)
 	peak = numpy.convolve(ratio.at(even), numpy.full(10, 0.1), "valid").max()
 	return [math.degrees(math.asin((peak - 1) / (peak + 1))), *(100 * float(series["volumetric_strain"].at(strain)) for strain in STRAINS)]
 
