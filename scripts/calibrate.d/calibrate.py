@@ -146,10 +146,10 @@ def announce(calibration, cores, say):
 	"""Say what a whole calibration costs, from its first generation."""
 	points = sampling.Prior(len(calibration.parameters)).draw(calibration.samples, calibration.randomSeed)
 	plan, _ = evaluate.Tests(calibration, ".", None, say).plan([(setName(0, k), point) for k, point in enumerate(points)])
-	seconds = calibration.generations * sum(job["seconds"] for job in plan["jobs"].values())
 	count = calibration.generations * len(plan["runs"])
 	say(f"{calibration.title}: {calibration.generations} generations of {calibration.samples} sets, {len(calibration.tests)} curves, {len(calibration.seeds)} packings: at most {count} tests")
-	say(f"about {seconds / 3600:.2g} core hours, {clock(seconds / cores)} on {cores} cores")
+	hours = calibration.generations * sweep.coreHours(plan["jobs"].values())
+	say(f"about {hours:.2g} core hours, {clock(3600 * hours / cores)} on {cores} cores")
 
 
 def main(argv):

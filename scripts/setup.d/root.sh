@@ -46,6 +46,10 @@ requirePlain() {
 	done
 }
 
+#: Where the host's own / is seen in the root, for a command that asks for it (rootOptions), and further options of bubblewrap.
+hostPlace=/host-of-hexmembrane
+rootOptions=()
+
 # enterRoot TREE: sets the array `entry`, the words before a command that is to run in TREE. /usr and /etc are the root's, read-only;
 # every other top-level folder is the host's at the same path: checkout, cache, home, output and working folder need no translation.
 enterRoot() {
@@ -59,7 +63,7 @@ enterRoot() {
 	done
 	for path in /*; do
 		case $path in
-		/bin | /sbin | /lib* | /usr | /etc | /boot | /lost+found) ;;
+		/bin | /sbin | /lib* | /usr | /etc | /boot | /lost+found | "$hostPlace") ;;
 		/dev) entry+=(--dev-bind /dev /dev) ;;
 		*)
 			if [[ -L $path ]]; then
@@ -70,7 +74,7 @@ enterRoot() {
 			;;
 		esac
 	done
-	entry+=(--chdir "$PWD")
+	entry+=("${rootOptions[@]}" --chdir "$PWD")
 	entry+=(/usr/bin/env -u LD_LIBRARY_PATH -u LD_PRELOAD -u PYTHONHOME -u PYTHONPATH -u BASH_ENV PATH=/usr/bin:/usr/sbin LC_ALL=C.UTF-8)
 	# Byte code beside the cache, since the root is read-only; no packages of the host's Python.
 	entry+=(PYTHONPYCACHEPREFIX="$cache/bytecode" PYTHONNOUSERSITE=1)

@@ -16,6 +16,8 @@ set -euo pipefail
 . "$setupDir/lammps.sh"
 # shellcheck source=scripts/setup.d/browser.sh
 . "$setupDir/browser.sh"
+# shellcheck source=scripts/setup.d/slurm.sh
+. "$setupDir/slurm.sh"
 
 # Where YADE comes from: sets host (native or root), yadeSource and entry.
 chooseHost() {
@@ -113,6 +115,18 @@ tellBuild() {
 prepare() {
 	chooseHost
 	build "$buildDir" "$*" -DCMAKE_BUILD_TYPE=Release -DYADE_EXECUTABLE=/usr/bin/yade-double -DYADE_SOURCE_DIR="$yadeSource"
+}
+
+# prepareForQueue TARGET...: prepare, for a command that may give jobs to a queue. What runs beside YADE finds the host's commands by the words in
+# HEXMEMBRANE_ON_HOST, and a job that a queue has started on the host is beside YADE by those in HEXMEMBRANE_BESIDE; both are quoted for a shell.
+prepareForQueue() {
+	local onHost="" beside
+	# shellcheck disable=SC2034 # for root.sh
+	rootOptions=(--dev-bind / "$hostPlace")
+	prepare "$@"
+	[[ $host == native ]] || printf -v onHost '%q ' bwrap --dev-bind "$hostPlace" / /usr/bin/env PATH="$PATH" ${LD_LIBRARY_PATH:+LD_LIBRARY_PATH="$LD_LIBRARY_PATH"}
+	printf -v beside '%q ' "${entry[@]}"
+	entry+=(HEXMEMBRANE_ON_HOST="$onHost" HEXMEMBRANE_BESIDE="$beside")
 }
 
 # runBeside COMMAND...: runs COMMAND beside YADE as the last thing of this script, with its exit code. Signals must reach COMMAND, which

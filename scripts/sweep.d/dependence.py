@@ -14,6 +14,7 @@ import pathlib
 from typing import Callable, Optional
 
 from hexmembrane.configuration import toDict
+from hexmembrane.configuration import stages as lists
 from hexmembrane.configuration.specimen import PATHS
 
 SPECIMEN, CONSOLIDATION, SHEAR = STAGES = ("specimen", "consolidation", "shear")
@@ -42,11 +43,11 @@ def _centred(config):
 
 
 def _membrane(config):
-	return config.boundary == "membrane"
+	return "membrane" in lists.boundaries(config)
 
 
 def _wall(config):
-	return config.boundary == "wall"
+	return "wall" in lists.boundaries(config)
 
 
 def _reference(config):
@@ -68,7 +69,7 @@ TABLE = {
 	"accuracy": (),  # what it chooses is settled before anything is named
 	"tier": _ALWAYS[CONSOLIDATION],
 	"boundary": _ALWAYS[CONSOLIDATION],
-	"stages": _ALWAYS[CONSOLIDATION],  # refused in a study
+	"stages": _ALWAYS[CONSOLIDATION],
 	"specimen.radius": _ALWAYS[SPECIMEN],
 	"specimen.height": _ALWAYS[SPECIMEN],
 	"specimen.packing": _ALWAYS[SPECIMEN],
@@ -161,11 +162,16 @@ def ownKeys(config, stage):
 	return found
 
 
+def foldersOf(config):
+	"""{stage that has a folder of its own: stages that run there}. A list of stages runs in one: what its consolidations have is not shared."""
+	return {stage: (stage,) for stage in STAGES} if config.stages is None else {SPECIMEN: (SPECIMEN,), SHEAR: (CONSOLIDATION, SHEAR)}
+
+
 def names(config):
 	"""{stage: name of its folder}, such as 'shear-0123456789abcdef'."""
 	made, before = {}, ""
-	for stage in STAGES:
-		keys = {key: "inf" if value == math.inf else value for key, value in ownKeys(config, stage).items()}
+	for stage, parts in foldersOf(config).items():
+		keys = {key: "inf" if value == math.inf else value for part in parts for key, value in ownKeys(config, part).items()}
 		text = json.dumps([_FORMAT, before, keys], sort_keys=True, allow_nan=False)
 		before = hashlib.sha256(text.encode()).hexdigest()[:16]
 		made[stage] = f"{stage}-{before}"

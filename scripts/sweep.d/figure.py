@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A study's figure: q and volumetric strain against axial strain, the mean over seeds with the band of its interval; a column of panels for each value of the last axis."""
+"""A study's figure: q and volumetric strain against axial strain, the mean over seeds with the band of its interval; a column of panels for each value of the last axis.
+
+Lists of stages pass through a strain several times: of a study that has one, the curve of each test is drawn.
+"""
 
 import collections
 
 import numpy
 from hexmembrane.report.summary import CONFIDENCE, halfWidth
-from results import group
+from results import endsOf, group
 from studyfile import NOT_VARIED, SET
 
 #: Strains at which curves are averaged; columns of panels at most, with more there is one; lines that a legend names at most.
@@ -52,15 +55,20 @@ def draw(plan, rows, path):
 	FigureCanvasAgg(figure)
 	panels = figure.subplots(2, len(columns), sharex=True, sharey="row", squeeze=False)
 	colours = colormaps["viridis"](numpy.linspace(0.0, 0.88, len(names)))
+	staged = bool(endsOf(plan))
 	for values, tables in curves.items():
 		column, name = (columns.index(values[-1]), values[:-1]) if columns != [None] else (0, values)
 		strain = numpy.linspace(0, min(table["axial_strain"][-1] for table in tables), _POINTS)
 		label = ", ".join(_short(key, value) for key, value in zip(plan["axes"], name))
 		for row, (what, factor, _) in enumerate(_LINES):
+			colour, told = colours[names.index(name)], f"{label} ({len(tables)})" if label else f"{len(tables)} tests"
+			if staged:
+				for k, table in enumerate(tables):
+					panels[row][column].plot(100 * table["axial_strain"], factor * table[what], color=colour, lw=1.0, label="" if k else told)
+				continue
 			each = numpy.array([numpy.interp(strain, table["axial_strain"], factor * table[what]) for table in tables])
 			mean, half = each.mean(axis=0), halfWidth(each)
-			colour = colours[names.index(name)]
-			panels[row][column].plot(100 * strain, mean, color=colour, lw=1.5, label=f"{label} ({len(tables)})" if label else f"{len(tables)} tests")
+			panels[row][column].plot(100 * strain, mean, color=colour, lw=1.5, label=told)
 			if len(tables) > 1:
 				panels[row][column].fill_between(100 * strain, mean - half, mean + half, color=colour, alpha=0.22, lw=0)
 	for column, value in enumerate(columns):
@@ -75,7 +83,7 @@ def draw(plan, rows, path):
 			axes.spines[["top", "right"]].set_visible(False)
 	if len(names) <= _MOST_NAMED:
 		panels[0][0].legend(frameon=False, fontsize="small")
-	figure.suptitle(f"{plan['title']}: mean over seeds and its {100 * CONFIDENCE:g} % interval")
+	figure.suptitle(plan["title"] + ("" if staged else f": mean over seeds and its {100 * CONFIDENCE:g} % interval"))
 	part = path.with_name(path.name + ".part")
 	figure.savefig(part, dpi=150, format="png", metadata={"Software": "hexmembrane"})
 	part.replace(path)

@@ -11,6 +11,7 @@ import json
 import os
 import pathlib
 import platform
+import resource
 import shutil
 import signal
 import subprocess
@@ -86,10 +87,11 @@ class Job:
 		return before and json.loads((self.base / "stages" / before / "result.json").read_text(encoding="utf-8"))
 
 	def arguments(self, resume):
-		how = ["--until", self.stage]
+		staged = self.stage == "shear" and self.job["config"].get("stages") is not None
+		how = [] if staged else ["--until", self.stage]
 		if resume:
 			how.append("--resume")
-		elif self.stage == "shear":
+		elif self.stage == "shear" and not staged:
 			how += ["--from", str(self.base / "stages" / self.job["before"] / "test" / PRODUCTS["consolidation"])]
 		return [str(self.folder / "job.yaml"), "--out", str(self.test), "--quiet", *how]
 
@@ -102,7 +104,11 @@ class Job:
 		threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
 		environment = {**os.environ, **threads, "PYTHONPATH": str(MAIN.parent.parent)}
 		said = self.folder / "log.txt"
+		again = said.exists()
 		with open(said, "ab") as log:
+			if again:
+				log.write(f"once more: {' '.join(self.arguments(resume)[1:])}\n".encode())
+				log.flush()
 			begun = log.tell()
 			child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment, preexec_fn=dieWithParent)
 			try:
@@ -143,6 +149,7 @@ class Job:
 
 	def result(self, status, error, attempts, seconds):
 		product, made = self.test / PRODUCTS[self.stage], {}
+		ended = resource.getrusage(resource.RUSAGE_CHILDREN)
 		if status == "done":
 			made = yaml.safe_load((self.test / "config.yaml").read_text(encoding="utf-8"))["made"]
 			made = {name: value for name, value in made.items() if isinstance(value, (str, int))}
@@ -152,6 +159,7 @@ class Job:
 			"failed_in": self.stage if status == "failed" else "",
 			"attempts": attempts,
 			"seconds": round(seconds, 2),
+			"processor_seconds": round(ended.ru_utime + ended.ru_stime, 2),
 			"bytes": product.stat().st_size if product.is_file() else 0,
 			"host": platform.node(),
 			"processor": processor(),
@@ -167,6 +175,8 @@ def main(name):
 	with open(job.folder / "lock", "wb") as lock:
 		try:
 			fcntl.flock(lock, fcntl.LOCK_EX)
+			if (job.folder / "result.json").is_file():
+				return 0  # another job of a queue, which was waited for, has done it
 			result = job.run()
 		except Stopped:
 			return STOPPED

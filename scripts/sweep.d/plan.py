@@ -6,9 +6,10 @@ import json
 import pathlib
 import shutil
 
-from dependence import CONSOLIDATION, SHEAR, SPECIMEN, contentOf, givesOwnPorosity, names
+from dependence import CONSOLIDATION, SHEAR, SPECIMEN, contentOf, foldersOf, givesOwnPorosity, names
 import studyfile
 from hexmembrane.configuration import ConfigError, toDict
+from hexmembrane.configuration import stages as lists
 from hexmembrane.configuration.lab import Lab
 from hexmembrane.configuration.specimen import PATHS
 from hexmembrane.run import estimate
@@ -16,10 +17,12 @@ from hexmembrane.scene import accuracy, specimen
 
 FORMAT = 1
 NAME, STAGES_FOLDER, INPUTS, RESULT = "plan.json", "stages", "inputs", "result.json"
-#: Start of YADE, picture and files of a stage [s].
-_START = 4.0
-#: Time [s] and bytes of a grain that is packed; bytes of a picture.
-_PACKING_TIME, _PACKING, _PICTURE = 2e-3, 90, 150000
+#: Processor time [s] of a stage's start, and of the start of scripts/sweep itself, both on the machine that these and estimate.STEP are of.
+_START, SWEEP_START = 4.0, 3.5
+#: Time [s] of a grain that is packed, of a picture, of a row, of a checkpoint, of a search for bands among 1,200 grains, and of a replicate of one there.
+_PACKING_TIME, _PICTURE_TIME, _ROW_TIME, _CHECKPOINT_TIME, _BANDS_TIME, _REPLICATE_TIME = 2e-3, 1.0, 3e-3, 0.02, 0.25, 0.01
+#: Bytes of a grain that is packed, of a picture.
+_PACKING, _PICTURE = 90, 150000
 
 
 def _settled(config):
@@ -37,7 +40,7 @@ def _settled(config):
 
 
 def _costs(config, radii):
-	"""{stage: (processor time [s], bytes on the disk)}, as a test's own estimate has them.
+	"""{stage: (processor time [s], bytes on the disk, processor time of the steps in it [s])}, as a test's own estimate has them.
 
 	:raises ConfigError: the test is beyond this machine, or not sound.
 	"""
@@ -46,13 +49,26 @@ def _costs(config, radii):
 	needs = estimate.Estimate.of(config, radii)
 	needs.require(config, estimate.Machine.here())
 	spheres = needs.grains + needs.membrane
-	one, kept = spheres * estimate.SECONDS[config.tier], spheres * (estimate.STATE + 2 * estimate.CHECKPOINT)
-	rows = needs.consolidation / config.output.consolidationSteps, config.output.records
-	return {
-		SPECIMEN: (_START + _PACKING_TIME * len(radii), _PACKING * len(radii)),
-		CONSOLIDATION: (_START + one * needs.consolidation, kept + estimate.ROW * rows[0]),
-		SHEAR: (_START + one * needs.shear, kept + estimate.ROW * rows[1] + _PICTURE),
+	one, kept = estimate.stepTime(config.tier, needs.grains, needs.membrane), spheres * (estimate.STATE + 2 * estimate.CHECKPOINT)
+	rows = needs.consolidation / config.output.consolidationSteps, sum(stage.records for stage in lists.plan(config))
+	row = _ROW_TIME + _CHECKPOINT_TIME / config.output.checkpointEvery
+	each = {
+		SPECIMEN: (_START + _PACKING_TIME * len(radii), _PACKING * len(radii), 0.0),
+		CONSOLIDATION: (_START + one * needs.consolidation + row * rows[0], kept + estimate.ROW * rows[0], one * needs.consolidation),
+		SHEAR: (_START + one * needs.shear + row * rows[1] + _PICTURE_TIME + _bandsTime(config, needs.grains), kept + estimate.ROW * rows[1] + _PICTURE, one * needs.shear),
 	}
+	made = {}
+	for stage, parts in foldersOf(config).items():
+		time, size, steps = (sum(each[part][k] for part in parts) for k in range(3))
+		made[stage] = time - _START * (len(parts) - 1), size, steps  # a list of stages starts once
+	return made
+
+
+def _bandsTime(config, grains):
+	"""Processor time [s] of the search for bands in a test."""
+	keys = config.measure
+	steps = config.shear.strain / keys.step if keys.bands else 0
+	return steps * (_BANDS_TIME + _REPLICATE_TIME * keys.replicates) * (0.5 + grains / 2400)
 
 
 def _keys(config, inputs):
@@ -83,6 +99,9 @@ def make(study):
 				if before:
 					keys["specimen"].update(packing=f"{STAGES_FOLDER}/{stages[SPECIMEN]}/test/packing.txt", gradation=None)
 				jobs[name] = {"stage": stage, "before": before, "seconds": round(costs[stage][0], 2), "bytes": round(costs[stage][1]), "config": keys}
+				jobs[name]["stepping"] = round(costs[stage][2], 2)
+				if stage == SHEAR:
+					jobs[name]["rows"] = list(lists.plan(run.config)[-1].chain)
 			before = name
 		runs.append({"name": run.name, "values": run.values, "seed": run.seed, "stages": stages})
 	return {"format": FORMAT, "title": study.title, "study": study.source, "axes": study.axes, "attempts": study.attempts, "runs": runs, "jobs": jobs}, inputs

@@ -7,6 +7,7 @@ import datetime
 import hashlib
 import io
 import json
+import math
 import pathlib
 
 import numpy
@@ -18,21 +19,38 @@ from plan import STAGES_FOLDER, result, writeText
 RUNS, MEANS, RECORDS, PROVENANCE = "runs.csv", "means.csv", "records.h5", "provenance.json"
 
 
-def headers():
-	"""Names of the quantities with their units, as in the records."""
-	return {name: f"{name} [{unit}]" for name, unit in QUANTITIES.items()}
-
-
 def recordsOf(folder, run):
 	"""Path of a run's records."""
 	return pathlib.Path(folder) / STAGES_FOLDER / run["stages"]["shear"] / "test" / "records.csv"
 
 
-def sheared(path):
-	"""The records of a test's shear, a dict of arrays; the peak and all strains are told of these."""
+def stagesOf(plan, run):
+	"""Labels of the stages that a run's rows in the tables are of: of a list of stages those since its last consolidation, which strains count from."""
+	return plan["jobs"][run["stages"]["shear"]].get("rows", ["shear"])
+
+
+def sheared(path, stages=("shear",)):
+	"""The records of some stages of a test, a dict of arrays; the peak and all strains are told of these."""
 	table = records.read(path)
-	rows = numpy.array([stage == "shear" for stage in table["stage"]])
+	rows = numpy.array([stage in stages for stage in table["stage"]])
 	return {name: column[rows] for name, column in table.items() if name != "stage"}
+
+
+def endsOf(plan):
+	"""Labels of stages whose q at the end is in the tables: those of lists of stages, as they follow one another."""
+	lists = [stagesOf(plan, run) for run in plan["runs"] if plan["jobs"][run["stages"]["shear"]]["config"].get("stages") is not None]
+	return list(dict.fromkeys(label for labels in lists for label in labels))
+
+
+def quantitiesOf(plan):
+	"""Name -> unit of what the tables have of each run."""
+	return {**QUANTITIES, **{f"q_after_{label}": "Pa" for label in endsOf(plan)}}
+
+
+def _qAfter(path, labels):
+	table = records.read(path)
+	last = {stage: q for stage, q in zip(table["stage"], table["q"])}
+	return {f"q_after_{label}": last.get(label, math.nan) for label in labels}
 
 
 def status(folder, run):
@@ -52,8 +70,9 @@ def _rows(plan, folder):
 		said, table = status(folder, run), None
 		if said == "done":
 			try:
-				table = sheared(recordsOf(folder, run))
-				found = quantities(table)
+				path = recordsOf(folder, run)
+				table = sheared(path, stagesOf(plan, run))
+				found = {**quantities(table), **_qAfter(path, endsOf(plan))}
 			except (OSError, ValueError, KeyError, IndexError) as error:
 				said, table = f"failed: records: {error}", None
 		yield run, said, found if table else None, table
@@ -74,12 +93,13 @@ def _means(plan, rows):
 	groups = collections.defaultdict(list)
 	for run, _, found, _ in rows:
 		groups[group(plan, run)].append(found)
-	parts = [(f"{name} mean [{unit}]", f"{name} half width [{unit}]") for name, unit in QUANTITIES.items()]
+	told = quantitiesOf(plan)
+	parts = [(f"{name} mean [{unit}]", f"{name} half width [{unit}]") for name, unit in told.items()]
 	table = [[*plan["axes"], "tests", "done", *(header for pair in parts for header in pair)]]
 	for values, found in groups.items():
 		done = [quantity for quantity in found if quantity]
 		cells = []
-		for name in QUANTITIES:
+		for name in told:
 			column = numpy.array([quantity[name] for quantity in done])
 			cells += [repr(float(column.mean())) if done else "", repr(float(halfWidth(column))) if len(done) > 1 else ""]
 		table.append([*values, len(found), len(done), *cells])
@@ -87,12 +107,14 @@ def _means(plan, rows):
 
 
 def _writeRecords(plan, rows, path):
-	"""All records by run, as HDF5: a group a run with the axes as attributes, a dataset a column with its unit."""
+	"""All records by run, as HDF5: a group a run with the axes as attributes, a dataset a column with its unit.
+
+	The file is made in memory: HDF5 does not get over a disk that is full, and ends the process by crashing.
+	"""
 	import h5py
 
 	units = {column.name: column.unit for column in COLUMNS}
-	part = path.with_name(path.name + ".part")
-	with h5py.File(part, "w") as file:
+	with h5py.File(path, "w", driver="core", backing_store=False) as file:
 		file.attrs["title"], file.attrs["plan"] = plan["title"], json.dumps(plan["study"], default=str)
 		for run, said, found, table in rows:
 			place = file.create_group(run["name"])
@@ -100,6 +122,10 @@ def _writeRecords(plan, rows, path):
 			place.attrs.update(found or {})
 			for name, column in (table or {}).items():
 				place.create_dataset(name, data=column, compression="gzip").attrs["unit"] = units.get(name, "")
+		file.flush()
+		image = file.id.get_file_image()
+	part = path.with_name(path.name + ".part")
+	part.write_bytes(image)
 	part.replace(path)
 
 
@@ -127,9 +153,10 @@ def gather(plan, folder):
 
 	folder = pathlib.Path(folder)
 	rows = list(_rows(plan, folder))
-	table = [["run", *plan["axes"], "seed", "status", "folder", *headers().values()]]
+	told = quantitiesOf(plan)
+	table = [["run", *plan["axes"], "seed", "status", "folder", *(f"{name} [{unit}]" for name, unit in told.items())]]
 	for run, said, found, _ in rows:
-		cells = [repr(float(found[name])) for name in QUANTITIES] if found else [""] * len(QUANTITIES)
+		cells = [repr(float(found[name])) for name in told] if found else [""] * len(told)
 		table.append([run["name"], *(run["values"][key] for key in plan["axes"]), run["seed"], said, recordsOf("", run).parent, *cells])
 	writeText(folder / RUNS, _csv(table))
 	writeText(folder / MEANS, _csv(_means(plan, rows)))
@@ -139,7 +166,7 @@ def gather(plan, folder):
 	facts = {
 		"date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
 		"study": plan["study"],
-		"processor_hours": round(sum(found["seconds"] for found in results.values() if found) / 3600, 4),
+		"processor_hours": round(sum(found.get("processor_seconds", found["seconds"]) for found in results.values() if found) / 3600, 4),
 		"made_by": _unlike({key: value for key, value in found["made"].items() if key != "date"} for found in results.values() if found),
 		"machines": _unlike({"host": found["host"], "processor": found["processor"]} for found in results.values() if found),
 		"stages": results,

@@ -113,8 +113,6 @@ def _designed(given, base, folder, first):
 	for key in axes:
 		if all(stageOf(key, run.config) is None for run in runs):
 			raise ConfigError(f"axes.{key}", axes[key], "changes no result of these tests", "take it out")
-	if any(run.config.stages is not None for run in runs):
-		raise ConfigError("stages", None, "a study's tests have one consolidation and one shear", "take stages out of its base and changes")
 	if len(seeds) > 1 and all(stageOf(SEED, run.config) is None for run in runs):
 		raise ConfigError("seeds", seeds, "change nothing, the packing is a file", "take them out, or give specimen.gradation")
 	return list(axes), runs

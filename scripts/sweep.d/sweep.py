@@ -4,6 +4,8 @@
 import argparse
 import contextlib
 import fcntl
+import importlib.metadata
+import math
 import os
 import pathlib
 import shutil
@@ -18,12 +20,15 @@ import archive  # noqa: E402
 import job
 import plan as plans
 import results
+import slurm
 import studyfile
 from hexmembrane.configuration import ConfigError
 from hexmembrane.report import page
 from hexmembrane.report.libraries import LibraryError
 from hexmembrane.run.progress import Progress, clock
 
+#: Processor time [s] that this program has taken to start; bounds of its ratio to what the estimates are of.
+_STARTED, _SLOWEST = time.process_time(), (0.3, 5.0)
 HERE = pathlib.Path(__file__).resolve().parent
 LOG = "snakemake.log"
 #: The study's page, and how many tests it has at most: each has curves of its own there.
@@ -31,6 +36,8 @@ PAGE, _MOST_TESTS = "report.html", 200
 #: How often Snakemake begins a job anew whose own program was ended.
 _RESTARTS = 3
 _LOOK = 0.3
+#: Words of Snakemake's log that are shown when it has left stages out.
+_LAST_WORDS = 30
 
 
 def addRunning(parser):
@@ -62,15 +69,25 @@ def _size(count):
 	return f"{count / 1e9:.2g} GB" if count >= 1e9 else f"{max(count, 1e5) / 1e6:.2g} MB"
 
 
+def coreHours(jobs):
+	"""Core hours of jobs of a plan on this machine as it is now: it starts a stage as fast or slowly as it has started this program.
+
+	Steps feel other programs on the machine less than starts do: by the root, as tests of 200 to 7,045 grains beside others have shown.
+	"""
+	slow = min(max(_STARTED / plans.SWEEP_START, _SLOWEST[0]), _SLOWEST[1])
+	stepping = sum(job.get("stepping", 0) for job in jobs)
+	return (slow * (sum(job["seconds"] for job in jobs) - stepping) + math.sqrt(slow) * stepping) / 3600
+
+
 def announce(plan, folder, cores, say):
 	"""Say what there is to do and what it will cost; whether there is anything."""
 	left = {name: found for name, found in plan["jobs"].items() if plans.result(folder, name) is None}
 	stages = ", ".join(f"{sum(found['stage'] == stage for found in plan['jobs'].values())} {name}" for stage, name in zip(job.PRODUCTS, ("packings", "consolidated states", "tests sheared")))
 	say(f"{plan['title']}: {len(plan['runs'])} runs; {stages}")
-	seconds = sum(found["seconds"] for found in left.values())
-	longest = max((found["seconds"] for found in left.values()), default=0)
+	hours = coreHours(left.values())
+	longest = max((coreHours([found]) for found in left.values()), default=0)
 	size, free = sum(found["bytes"] for found in left.values()), shutil.disk_usage(folder if folder.exists() else pathlib.Path.cwd()).free
-	say(f"to do: {len(left)} stages, about {seconds / 3600:.2g} core hours, {clock(max(seconds / cores, longest))} on {cores} cores, {_size(size)} on the disk of {_size(free)} free")
+	say(f"to do: {len(left)} stages, about {hours:.2g} core hours, {clock(3600 * max(hours / cores, longest))} on {cores} cores, {_size(size)} on the disk of {_size(free)} free")
 	if size > free:
 		say("WARNING: the disk will be full before the study is done; fix: --out on another one")
 	return bool(left)
@@ -82,7 +99,7 @@ def _snakemake(arguments):
 	command += ["--rerun-triggers", "mtime", "--restart-times", str(_RESTARTS), "--scheduler", "greedy", "--latency-wait", "10" if local else "60", "--nocolor"]
 	command += ["--cores", str(arguments.cores)] if local else ["--jobs", str(arguments.cores)]
 	if arguments.slurm:
-		command.append("--slurm")
+		command += slurm.options(importlib.metadata.version("snakemake"))
 	if arguments.profile:
 		command += ["--profile", os.path.abspath(arguments.profile)]
 	return [*command, *arguments.snakemake]
@@ -103,6 +120,8 @@ def _run(plan, folder, arguments):
 	weights = {name: found["seconds"] for name, found in plan["jobs"].items()}
 	total = sum(weights.values())
 	environment = {**os.environ, "PYTHONWARNINGS": "ignore"}
+	if arguments.slurm:
+		slurm.cancel(folder)  # of a call that was killed
 	if not arguments.slurm and not arguments.profile:
 		environment[job.RUNNER] = str(os.getpid())
 	with open(folder / LOG, "ab") as log, Progress("sweep") as progress:
@@ -124,6 +143,8 @@ def _run(plan, folder, arguments):
 		finally:
 			if child.poll() is None:
 				_end(child)
+			if arguments.slurm:
+				slurm.cancel(folder)
 
 
 def lock(folder):
@@ -156,10 +177,21 @@ def _tell(table, folder, say):
 
 
 def advance(plan, inputs, folder, arguments, say):
-	"""Write a plan into its folder, whose lock the caller holds, and run what has not been run; nothing is gathered."""
+	"""Write a plan into its folder, whose lock the caller holds, and run what has not been run; nothing is gathered.
+
+	:raises ConfigError: jobs are to go to a queue that is not there.
+	"""
+	if arguments.slurm and slurm.version() is None:
+		raise ConfigError("--slurm", "sbatch", "is not found or does not answer on this machine", "call it where jobs are submitted, such as a cluster's login node, or leave --slurm out")
 	plans.write(plan, inputs, folder)
+	before = {name for name in plan["jobs"] if plans.result(folder, name)}
 	if announce(plan, folder, arguments.cores, say):
-		_run(plan, folder, arguments)
+		code = _run(plan, folder, arguments)
+		took = [found for name in set(plan["jobs"]) - before if (found := plans.result(folder, name))]
+		say(f"took {sum(found['processor_seconds'] for found in took) / 3600:.2g} core hours for {len(took)} stages")
+		if any(plans.result(folder, name) is None for name in plan["jobs"]):
+			lines = (folder / LOG).read_text(encoding="utf-8", errors="replace").split()
+			say(f"Snakemake ended with the code {code}; its last words: {' '.join(lines[-_LAST_WORDS:])}")
 
 
 def _page(plan, folder, say):
@@ -190,9 +222,15 @@ def execute(plan, inputs, folder, arguments, say):
 			with open(folder / results.RUNS, encoding="utf-8", newline="") as file:
 				return _tell(list(results.csv.reader(file)), folder, say)
 		advance(plan, inputs, folder, arguments, say)
-		table = results.gather(plan, folder)
-		archive.write(plan, folder)
-		_page(plan, folder, say)
+		try:
+			table = results.gather(plan, folder)
+			archive.write(plan, folder)
+			_page(plan, folder, say)
+		except OSError as error:
+			for run in plan["runs"]:
+				say(f"run {run['name']}: {results.status(folder, run)}")
+			say(f"the tables cannot be written ({error}); fix: make room, then the same command with --again goes on")
+			return 1
 		return _tell(table, folder, say)
 
 

@@ -18,8 +18,9 @@ from hexmembrane.configuration.stages import CONSOLIDATION, MEMBRANE, boundaries
 from hexmembrane.run.progress import clock
 from hexmembrane.scene import timestep
 
-#: Time [s] of one step of one sphere on one thread, by tier: README.md, Speed.
-SECONDS = {"compact": 1.1e-3 / 19429, "reference": 29 * 1.1e-3 / 19429}
+#: Time [s] of one step of the compact tier on one thread: of any, a grain's part, a membrane sphere's: README.md, Speed, and 65 us of a test of 200 grains. The reference
+#: tier's steps last so many times as long.
+STEP, GRAIN_STEP, MEMBRANE_STEP, REFERENCE = 25e-6, 8.2e-8, 4.2e-8, 29
 #: Memory [bytes]: of YADE, Python and the picture; of a sphere with its contacts. Measured with 3,416 and 15,328 spheres in both tiers: 300 MB, 4 kB, and 80 MB for the picture.
 PROGRAM, SPHERE = 400e6, 6e3
 #: Disk [bytes] a sphere: a kept state, a last checkpoint, a VTK frame; bytes of a row. Measured with 3,416 spheres.
@@ -124,7 +125,7 @@ class Estimate:
 			rise=rise,
 			consolidation=consolidation,
 			shear=sheared,
-			seconds=(consolidation + sheared) * spheres * SECONDS[config.tier],
+			seconds=(consolidation + sheared) * stepTime(config.tier, len(radii), particles),
 			memory=PROGRAM + SPHERE * spheres,
 			disk=spheres * (3 * STATE + 3 * CHECKPOINT + frame * frames) + ROW * rows + (PAGE + pageFrame * spheres * frames) * config.output.report,
 		)
@@ -163,6 +164,11 @@ class Estimate:
 				"output.vtkEvery", config.output.vtkEvery, f"the test needs about {_size(self.disk)} on the disk, and {_size(machine.disk)} are free",
 				"a larger one, 0 for no VTK, fewer output.records, or another folder with --out",
 			)  # fmt: skip
+
+
+def stepTime(tier, grains, membrane):
+	"""Time [s] of a step on one thread. :param grains, membrane: numbers of spheres."""
+	return (STEP + GRAIN_STEP * grains + MEMBRANE_STEP * membrane) * (REFERENCE if tier == "reference" else 1)
 
 
 def requireThreads(config, machine=None):
