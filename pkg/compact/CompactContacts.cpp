@@ -10,6 +10,7 @@
 #include <boost/make_shared.hpp>
 
 #include <cstring>
+#include <unordered_map>
 
 namespace yade {
 
@@ -144,13 +145,13 @@ vector<Vector3r> CompactLoop::withEngines(vector<Vector3r> forces) const
 void CompactLoop::forEachContact(const VisitContact& visit) const
 {
 	const Instant then = lastInstant();
-	state->visitContacts(then.places, then.shapes, visit);
-	visitEngines(visit);
+	visitWithEngines(then.places, then.shapes, visit);
 }
 
-void CompactLoop::visitEngines(const VisitContact& visit) const
+void CompactLoop::visitWithEngines(const vector<hexmembrane::Place>& places, const vector<std::shared_ptr<const hexmembrane::BoundaryShape>>& shapes,
+                                   const VisitContact& visit) const
 {
-	Stepped::forEachOf(engines, [&](const Stepped& one) { one.forEachContact(visit); });
+	Stepped::forEachContactWith(engines, [&](const VisitContact& one) { state->visitContacts(places, shapes, one); }, visit);
 }
 
 void CompactLoop::exportContacts()
@@ -194,7 +195,7 @@ int CompactLoop::contactCount() const
 	requireRun("contactCount");
 	int count = static_cast<int>(contactsSoFar().size());
 	state->spheres.smooth.forEachTouching(lastInstant().places, [&](int, int, Real, Real, const Vector3r&) { ++count; });
-	visitEngines([&](const TouchingContact&) { ++count; });
+	Stepped::forEachOf(engines, [&](const Stepped& one) { one.forEachContact([&](const TouchingContact&) { ++count; }); });
 	return count;
 }
 
@@ -208,6 +209,15 @@ Real CompactLoop::criticalTimeStep()
 		one->forEachSupport([&](int particle, Body::id_t grain, const Vector3r& normal, Real kn) {
 			step.addSupport(particle, static_cast<int>(std::find(ids.begin(), ids.end(), grain) - ids.begin()), normal, kn);
 		});
+		std::unordered_map<Body::id_t, int> rowOf; // made when there is a joint
+		one->forEachJointSpring(
+		        [&](Body::id_t first, Body::id_t second, const Vector3r& normal, const std::array<Real, 2>& arms, const JointStiffness& k) {
+			        if (rowOf.empty())
+				        for (size_t i = 0; i < ids.size(); ++i) rowOf[ids[i]] = static_cast<int>(i);
+			        const auto a = rowOf.find(first), b = rowOf.find(second);
+			        if (a == rowOf.end() || b == rowOf.end()) return; // the next step refuses it
+			        step.addJoint(a->second, b->second, normal, arms[0], arms[1], {k.normal, k.shear, 0, k.bending, 0}, k.twisting);
+		        });
 	}
 	if (state->sheet.ids)
 		step.setSheet(state->sheet.stencil, [&](const hexmembrane::PaddedRings& displacement, hexmembrane::PaddedRings& sum) {

@@ -61,6 +61,12 @@ public:
 	hexmembrane::SphereRows grains(const HexMembrane&) override { return {state.spheres.places.data(), state.spheres.id.data(), state.spheres.grains()}; }
 	hexmembrane::Travel travel() const override { return state.spheres.travel(); }
 	void addForce(int grain, const Vector3r& force) override { state.spheres.loads[grain].force += force; }
+	MovingRows moving(const vector<Body::id_t>&) override
+	{
+		const hexmembrane::SphereAssembly& spheres = state.spheres;
+		return {spheres.places.data(), spheres.motions.data(), spheres.id.data(), spheres.grains(), spheres.travel().order};
+	}
+	void addLoad(int row, const hexmembrane::Load& load) override { state.spheres.loads[row] += load; }
 	vector<Vector3r> contactForces(const HexMembrane&) override
 	{
 		return loop.withEngines(state.contactForces(state.spheres.places, state.spheres.shapes()));
@@ -72,11 +78,7 @@ public:
 		return {load.load.force + loop.outsideOn[b], load.normalForce, load.normalStiffness, load.count, ""};
 	}
 	Real stiffness(Body::id_t boundary, const Vector3r& along) override { return state.spheres.boundaryContacts[require(boundary)].stiffness(along); }
-	void forEachContact(const VisitContact& visit) override
-	{
-		state.visitContacts(state.spheres.places, state.spheres.shapes(), visit);
-		loop.visitEngines(visit);
-	}
+	void forEachContact(const VisitContact& visit) override { loop.visitWithEngines(state.spheres.places, state.spheres.shapes(), visit); }
 
 private:
 	void takeOver(WorkMeter& meter, const vector<RingRange>& rings) const

@@ -65,7 +65,9 @@ private:
 	Instant lastInstant() const;
 	//! Forces of contacts on the sheet's particles, with those of the contacts that engines have made.
 	vector<Vector3r> withEngines(vector<Vector3r> forces) const;
-	void visitEngines(const VisitContact& visit) const;
+	//! All contacts, with spheres at `places` and boundaries of these shapes.
+	void visitWithEngines(const vector<hexmembrane::Place>& places, const vector<std::shared_ptr<const hexmembrane::BoundaryShape>>& shapes,
+	                      const VisitContact& visit) const;
 	void requireRun(const char* what) const;
 
 	//! The instant of a step as the engines see it.

@@ -4,11 +4,13 @@
 #include "WorkMeter.hpp"
 
 #include "kernels/base/Place.hpp"
+#include "kernels/compact/SphereArrays.hpp"
 #include "kernels/membrane/PaddedRings.hpp"
 
 #include <core/Body.hpp>
 #include <core/GlobalEngine.hpp>
 
+#include <array>
 #include <functional>
 
 /* What an engine implements to be stepped in either tier. CompactLoop knows its engines by this interface alone; in the reference tier their action() makes the same
@@ -52,6 +54,20 @@ struct TouchingContact {
 };
 using VisitContact = std::function<void(const TouchingContact&)>;
 
+/*! Spheres where a view has them, with their velocities and spins. `order`: rows are where they were while it is the same. */
+struct MovingRows {
+	const hexmembrane::Place* places;
+	const hexmembrane::Motion* motions;
+	const int* ids;
+	int count;
+	long order; //!< not negative
+};
+
+/*! Springs of a joint of two spheres: along its normal and across it (N/m), about axes across it and along it (N m). */
+struct JointStiffness {
+	Real normal, shear, bending, twisting;
+};
+
 /*! An instant of a run as engines see it: positions and contact forces belong together, velocities are those of half a step before. */
 class StepView {
 public:
@@ -73,6 +89,10 @@ public:
 	virtual hexmembrane::Travel travel() const { return {}; }
 	//! Adds a force to one of those rows.
 	virtual void addForce(int grain, const Vector3r& force) = 0;
+	//! Grains with their motions, these bodies at least; they stay where they are until the step ends. \throws std::invalid_argument for a body that is gone
+	virtual MovingRows moving(const vector<Body::id_t>& ids) = 0;
+	//! Adds a load to one of those rows; may be called in parallel for different ones.
+	virtual void addLoad(int row, const hexmembrane::Load& load) = 0;
 	//! Normal forces of the contacts of each particle with all that is not membrane (N), on the particle.
 	virtual vector<Vector3r> contactForces(const HexMembrane& membrane) = 0;
 	//! Sums over the contacts of a boundary.
@@ -103,6 +123,14 @@ public:
 	virtual void addAnswer(const hexmembrane::PaddedRings& displacement, hexmembrane::PaddedRings& sum) const { (void)displacement, (void)sum; }
 	//! Calls visit for every touching contact that this engine made in its last step, a particle of its membrane first. They have no friction.
 	virtual void forEachContact(const VisitContact&) const {}
+	//! Calls visit for each pair of spheres that this engine holds together beside their contact, or without one, as of its last step.
+	virtual void forEachJoint(const VisitContact&) const {}
+	//! Calls visit(id1, id2, normal, distances of the centres from the joint, stiffness) for each of them: as forEachBond().
+	using VisitJointSpring = std::function<void(Body::id_t, Body::id_t, const Vector3r&, const std::array<Real, 2>&, const JointStiffness&)>;
+	virtual void forEachJointSpring(const VisitJointSpring&) const {}
+	//! Calls visit for every contact: those that `own` visits, and those of these engines. A pair with a joint is one contact, with the forces of both.
+	static void forEachContactWith(const vector<shared_ptr<Engine>>& engines, const std::function<void(const VisitContact&)>& own,
+	                               const VisitContact& visit);
 	//! Adds their forces to those of `onParticles`, which belong to these bodies (N).
 	void addContactForces(const vector<Body::id_t>& ids, vector<Vector3r>& onParticles) const;
 	//! Calls visit(particle, id of a grain, unit vector from one to the other, kn) for each spring between them: as forEachBond().
@@ -111,6 +139,8 @@ public:
 	//! Calls visit for each of these engines that is stepped and not dead.
 	using Visit = std::function<void(const Stepped&)>;
 	static void forEachOf(const vector<shared_ptr<Engine>>& engines, const Visit& visit);
+	//! The list that such engines of a scene stand in, in either tier.
+	static const vector<shared_ptr<Engine>>& enginesOf(const Scene& scene);
 	//! Calls visit for each such engine of a scene, in either tier.
 	static void forEachIn(const Scene& scene, const Visit& visit);
 	//! The membrane that it acts on, none: no membrane.

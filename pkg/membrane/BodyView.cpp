@@ -13,6 +13,7 @@
 #include <pkg/dem/ScGeom.hpp>
 #include <pkg/dem/NewtonIntegrator.hpp>
 
+#include <map>
 #include <unordered_map>
 
 namespace yade {
@@ -35,6 +36,14 @@ string forEachOfBody(const Body& body, Visit&& visit)
 			silent = contact.phys->getClassName();
 	}
 	return silent;
+}
+
+//! What holds the same two spheres together besides.
+void addTo(TouchingContact& contact, const TouchingContact& joint)
+{
+	contact.force += joint.id1 == contact.id1 ? joint.force : Vector3r(-joint.force);
+	contact.normalForce += joint.normalForce;
+	contact.friction = joint.friction;
 }
 
 } // namespace
@@ -76,10 +85,41 @@ void Stepped::forEachOf(const vector<shared_ptr<Engine>>& engines, const Visit& 
 	}
 }
 
-void Stepped::forEachIn(const Scene& scene, const Visit& visit)
+const vector<shared_ptr<Engine>>& Stepped::enginesOf(const Scene& scene)
 {
 	const auto* keeper = dynamic_cast<const ContactKeeper*>(ContactKeeper::of(scene));
-	forEachOf(keeper ? keeper->innerEngines() : scene.engines, visit);
+	return keeper ? keeper->innerEngines() : scene.engines;
+}
+
+void Stepped::forEachIn(const Scene& scene, const Visit& visit) { forEachOf(enginesOf(scene), visit); }
+
+void Stepped::forEachContactWith(const vector<shared_ptr<Engine>>& engines, const std::function<void(const VisitContact&)>& own, const VisitContact& visit)
+{
+	vector<TouchingContact> joints;
+	std::map<std::pair<Body::id_t, Body::id_t>, size_t> jointOf; // the lower id first
+	forEachOf(engines, [&](const Stepped& engine) {
+		engine.forEachJoint([&](const TouchingContact& joint) {
+			const auto [at, isNew] = jointOf.emplace(std::minmax(joint.id1, joint.id2), joints.size());
+			if (isNew)
+				joints.push_back(joint);
+			else
+				addTo(joints[at->second], joint);
+		});
+	});
+	if (joints.empty())
+		own(visit);
+	else
+		own([&](const TouchingContact& contact) {
+			const auto at = jointOf.find(std::minmax(contact.id1, contact.id2));
+			if (at == jointOf.end()) return visit(contact);
+			TouchingContact both = contact;
+			addTo(both, joints[at->second]);
+			jointOf.erase(at);
+			visit(both);
+		});
+	for (const TouchingContact& joint : joints)
+		if (jointOf.count(std::minmax(joint.id1, joint.id2))) visit(joint);
+	forEachOf(engines, [&](const Stepped& engine) { engine.forEachContact(visit); });
 }
 
 void Stepped::addContactForces(const vector<Body::id_t>& ids, vector<Vector3r>& onParticles) const
@@ -191,6 +231,27 @@ void BodyView::addForce(int grain, const Vector3r& force)
 	scene.forces.addForce(grainIds[grain], force);
 }
 
+MovingRows BodyView::moving(const vector<Body::id_t>& ids)
+{
+	movingIds = &ids;
+	movingPlaces.clear();
+	motions.clear();
+	for (const Body::id_t id : ids) {
+		const Body* body = livingBody(*scene.bodies, id);
+		const auto* sphere = body ? dynamic_cast<const Sphere*>(body->shape.get()) : nullptr;
+		if (!sphere) hexmembrane::reject(who + ".ids", int(id), "is bonded, and is no sphere any more", "release() it before it is erased");
+		movingPlaces.push_back({body->state->pos, sphere->radius});
+		motions.push_back({body->state->vel, body->state->angVel});
+	}
+	return {movingPlaces.data(), motions.data(), ids.data(), static_cast<int>(ids.size()), 0};
+}
+
+void BodyView::addLoad(int row, const hexmembrane::Load& load)
+{
+	scene.forces.addForce((*movingIds)[row], load.force);
+	scene.forces.addTorque((*movingIds)[row], load.torque);
+}
+
 vector<Vector3r> BodyView::contactForces(const HexMembrane& membrane) { return membrane.contactForces(scene, who); }
 
 ContactSums BodyView::contacts(Body::id_t boundary)
@@ -232,7 +293,7 @@ Real frictionOf(const NormShearPhys& phys)
 	return frictional ? frictional->tangensOfFrictionAngle : NaN;
 }
 
-void forEachInteraction(const Scene& scene, const string& who, const VisitContact& visit)
+void forEachOwn(const Scene& scene, const string& who, const VisitContact& visit)
 {
 	for (const auto& interaction : *scene.interactions) {
 		if (!interaction->isReal()) continue;
@@ -254,7 +315,11 @@ void forEachInteraction(const Scene& scene, const string& who, const VisitContac
 		visit({a->getId(), b->getId(), centre(*a, -1), centre(*b, 1), geom->contactPoint, phys->normalForce + phys->shearForce,
 		       phys->normalForce.dot(geom->normal), frictionOf(*phys)});
 	}
-	Stepped::forEachIn(scene, [&](const Stepped& engine) { engine.forEachContact(visit); });
+}
+
+void forEachInteraction(const Scene& scene, const string& who, const VisitContact& visit)
+{
+	Stepped::forEachContactWith(Stepped::enginesOf(scene), [&](const VisitContact& one) { forEachOwn(scene, who, one); }, visit);
 }
 
 } // namespace

@@ -20,6 +20,8 @@ public:
 	void grip(const HexMembrane& membrane, const vector<std::pair<int, Vector3r>>& rings, WorkMeter& meter) override;
 	hexmembrane::SphereRows grains(const HexMembrane& membrane) override;
 	void addForce(int grain, const Vector3r& force) override;
+	MovingRows moving(const vector<Body::id_t>& ids) override;
+	void addLoad(int row, const hexmembrane::Load& load) override;
 	vector<Vector3r> contactForces(const HexMembrane& membrane) override;
 	ContactSums contacts(Body::id_t boundary) override;
 	Real stiffness(Body::id_t boundary, const Vector3r& along) override;
@@ -33,6 +35,9 @@ private:
 	vector<hexmembrane::Place> grainPlaces;
 	vector<Body::id_t> grainIds;
 	const HexMembrane* grainsBeside = nullptr; //!< membrane that they are not of
+	vector<hexmembrane::Place> movingPlaces;
+	vector<hexmembrane::Motion> motions;
+	const vector<Body::id_t>* movingIds = nullptr;
 };
 
 } // namespace yade

@@ -27,6 +27,7 @@ def _arguments(argv):
 	parser = argparse.ArgumentParser(prog="scripts/calibrate", description="Calibrates grains on laboratory curves.")
 	parser.add_argument("calibration", metavar="CALIBRATION", help="YAML file, see examples/calibrate/README.md")
 	parser.add_argument("--out", metavar="DIR", help="folder (default: out/calibrate/NAME OF CALIBRATION)")
+	parser.add_argument("--inside", action="store_true", help="tests one after the other in this one process: of few grains a YADE's start takes longer than the test")
 	sweep.addRunning(parser)
 	given = parser.parse_args(argv)
 	if given.cores < 1:
@@ -130,7 +131,7 @@ def calibrate(calibration, folder, arguments, say):
 			say(text)
 	folder.mkdir(parents=True, exist_ok=True)
 	with sweep.lock(folder):
-		tests = evaluate.Tests(calibration, folder, arguments, say)
+		tests = (evaluate.Inside if arguments.inside else evaluate.Tests)(calibration, folder, arguments, say)
 		search = Search(calibration, folder, tests, say)
 		evaluations, failed, weight = (_bayes if calibration.method == "bayes" else _best)(search, say)
 		sets = search.sets(calibration.generations)

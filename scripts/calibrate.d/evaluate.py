@@ -3,6 +3,7 @@
 
 import pathlib
 
+import inside
 import plan as plans
 import results
 import sweep
@@ -55,3 +56,29 @@ class Tests:
 		plan, inputs = self.plan(sets)
 		plans.write(plan, inputs, self.folder)
 		return results.gather(plan, self.folder)
+
+
+class Inside(Tests):
+	"""The same without a YADE a stage: the tests run one after the other in this process, for specimens of few grains."""
+
+	def run(self, sets):
+		study = self.calibration.study(sets)
+		self.folder.mkdir(parents=True, exist_ok=True)
+		with sweep.lock(self.folder):
+			if self._arguments.again:
+				inside.forget(study, self.folder)
+				self._arguments.again = False
+			inside.perform(study, self.folder, self._say)
+
+	def series(self, sets):
+		found, failed = {name: {} for name, _ in sets}, {name: [] for name, _ in sets}
+		for run in self.calibration.study(sets).runs:
+			name, curve, said = run.values["set"], run.values["curve"], inside.status(self.folder, run)
+			if said == "done":
+				found[name].setdefault(curve, []).append(misfit.ofTest(inside.table(self.folder, run)))
+			else:
+				failed[name].append(f"{run.name}: {said}")
+		return found, failed
+
+	def gather(self, sets):
+		"""Nothing: the tables of a study are made from its stages."""

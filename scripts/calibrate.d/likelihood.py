@@ -17,6 +17,8 @@ LENGTH = 0.02
 READING = {"stress_ratio": 0.05, "volumetric_strain": 0.0015}
 #: Points of a curve that are compared, evenly over its strain.
 POINTS = 25
+#: Steps between readings that are so many medians wide, and wider than half LENGTH, are gaps: a straight line over one is no reading.
+GAP = 3
 
 
 @dataclasses.dataclass
@@ -40,8 +42,17 @@ def targets(curves, end):
 		for quantity, series in curve.series.items():
 			last = min(series.strain[-1], end[name])
 			strain = numpy.linspace(max(series.strain[0], 0.0), last, POINTS + 1)[1:]
+			strain = strain[~_inGap(series.strain, strain)]
 			found.append(Target(name, quantity, strain, series.at(strain)))
 	return found
+
+
+def _inGap(read, strain):
+	"""Which strains lie in gaps between the strains that were read."""
+	steps = numpy.diff(read)
+	wide = steps > max(GAP * float(numpy.median(steps)), LENGTH / 2)
+	at = numpy.clip(numpy.searchsorted(read, strain), 1, len(steps)) - 1
+	return wide[at] & ~numpy.isin(strain, read)
 
 
 class Evaluations:

@@ -25,7 +25,7 @@ TOLERANCE = 0.1
 
 
 def _members(plan, folder):
-	tops = [NAME, RUNS, MEANS, RECORDS, PROVENANCE, "study.png"]
+	tops = [NAME, RUNS, MEANS, RECORDS, PROVENANCE, *sorted(path.name for path in folder.glob("study*.png"))]
 	inputs = sorted(str(path.relative_to(folder)) for path in (folder / INPUTS).rglob("*") if path.is_file() and path.suffix != ".part")
 	stages = [f"{STAGES_FOLDER}/{name}/{file}" for name in sorted(plan["jobs"]) for file in _KEPT]
 	# a test's packing is that of its specimen's stage

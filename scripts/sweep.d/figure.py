@@ -9,6 +9,7 @@ import collections
 import numpy
 from hexmembrane.report.summary import CONFIDENCE, halfWidth
 from results import endsOf, group
+from studyfile import NOT_VARIED, SET
 
 #: Strains at which curves are averaged; columns of panels at most, with more there is one; lines that a legend names at most.
 _POINTS, _MOST_COLUMNS, _MOST_NAMED = 201, 6, 10
@@ -18,6 +19,21 @@ _LINES = (("q", 1e-3, "deviatoric stress of the soil q [kPa]"), ("volumetric_str
 def _short(key, value):
 	name = key.rpartition(".")[2]
 	return f"{name} {value:g}" if isinstance(value, (int, float)) and not isinstance(value, bool) else f"{name} {value}"
+
+
+def drawAll(plan, rows, folder):
+	"""Draw study.png, or study-SET.png for each set of a study of sets; the paths."""
+	if plan["axes"][:1] != [SET]:
+		paths = {folder / "study.png": (plan, rows)}
+	else:
+		paths = {}
+		for name in dict.fromkeys(run["values"][SET] for run in plan["runs"]):
+			own = [row for row in rows if row[0]["values"][SET] == name]
+			axes = [key for key in plan["axes"][1:] if own[0][0]["values"][key] != NOT_VARIED]
+			paths[folder / f"study-{name.replace(' ', '-')}.png"] = {**plan, "axes": axes, "title": f"{plan['title']}: {name}"}, own
+	for path, (part, own) in paths.items():
+		draw(part, own, path)
+	return list(paths)
 
 
 def draw(plan, rows, path):

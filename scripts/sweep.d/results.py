@@ -154,14 +154,14 @@ def gather(plan, folder):
 	folder = pathlib.Path(folder)
 	rows = list(_rows(plan, folder))
 	told = quantitiesOf(plan)
-	table = [["run", *plan["axes"], "seed", "status", *(f"{name} [{unit}]" for name, unit in told.items())]]
+	table = [["run", *plan["axes"], "seed", "status", "folder", *(f"{name} [{unit}]" for name, unit in told.items())]]
 	for run, said, found, _ in rows:
 		cells = [repr(float(found[name])) for name in told] if found else [""] * len(told)
-		table.append([run["name"], *(run["values"][key] for key in plan["axes"]), run["seed"], said, *cells])
+		table.append([run["name"], *(run["values"][key] for key in plan["axes"]), run["seed"], said, recordsOf("", run).parent, *cells])
 	writeText(folder / RUNS, _csv(table))
 	writeText(folder / MEANS, _csv(_means(plan, rows)))
 	_writeRecords(plan, rows, folder / RECORDS)
-	figure.draw(plan, rows, folder / "study.png")
+	figure.drawAll(plan, rows, folder)
 	results = {name: result(folder, name) for name in plan["jobs"]}
 	facts = {
 		"date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),

@@ -6,6 +6,7 @@ import difflib
 import itertools
 import os
 import pathlib
+import re
 
 from dependence import flat, stageOf
 from hexmembrane import configuration
@@ -21,16 +22,22 @@ KEYS = {
 	"axes": "key path -> list of its values",
 	"combine": "'product': every value with every other; 'list': the first of each axis, the second of each, ...",
 	"seeds": "list of specimen.seed, or how many, from 1; none: the base's",
+	"sets": "several studies in one: name -> its own changes, axes, combine and seeds; what they share is run once",
 	"attempts": "how often a stage is tried before it counts as failed (2)",
 	"report": "whether the study's page is written at the end, report.html (true)",
 }
+#: Keys that a set of ``sets`` may have; a study has either them or ``sets``, beside the changes of all.
+SET_KEYS = ("changes", "axes", "combine", "seeds")
+#: The axis that names a run's set, and an axis' value in a run of a set that does not have it.
+SET, NOT_VARIED = "set", "-"
+_SET_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 _-]*")
 SEED = "specimen.seed"
 MOST_ATTEMPTS = 20
 
 
 @dataclasses.dataclass
 class Run:
-	"""One test: ``name``, its ``values`` by key path of the axes, ``seed``, checked ``config``."""
+	"""One test: ``name``, its ``values`` by key path of the axes (and SET), ``seed``, checked ``config``."""
 
 	name: str
 	values: dict
@@ -63,17 +70,52 @@ def load(path):
 			raise ConfigError(f"study.{name}", given[name], "unknown key", f"{_guess(name, KEYS)}known keys are {', '.join(KEYS)}")
 	wantsPage(given)
 	base = baseOf(given, path.parent)
-	axes = _axes(given.get("axes"), base, path.parent)
+	if "sets" in given:
+		axes, runs = _sets(given, base, path.parent)
+	else:
+		axes, runs = _designed(given, base, path.parent, 1)
+	return Study(titleOf(given, path), axes, runs, attemptsOf(given.get("attempts", 2)), given)
+
+
+def _sets(given, base, folder):
+	"""(axes, runs) of a study of sets; a run has '-' for an axis that its set does not have."""
+	sets = given["sets"]
+	if not isinstance(sets, dict) or not sets:
+		raise ConfigError("study.sets", sets, "are no sets", "write 'name:' lines, each with axes, changes or seeds below it")
+	for name in ("axes", "combine", "seeds"):
+		if name in given:
+			raise ConfigError(f"study.{name}", given[name], "stands beside sets", "give it in each set")
+	found = []
+	for name, own in sets.items():
+		if not _SET_NAME.fullmatch(str(name)):
+			raise ConfigError("study.sets", name, "is no name of a set, which is that of a file too", "use letters, digits, spaces, _ and -, a letter or digit first")
+		if not isinstance(own, dict):
+			raise ConfigError(f"sets.{name}", own, "is not a mapping of keys", f"give {', '.join(SET_KEYS)}")
+		for key in own:
+			if key not in SET_KEYS:
+				raise ConfigError(f"sets.{name}.{key}", own[key], "unknown key", f"{_guess(key, SET_KEYS)}known keys are {', '.join(SET_KEYS)}")
+		changed = derived(base, _changes(own, folder))
+		found.append((str(name), *_designed(own, changed, folder, 1 + sum(len(runs) for _, _, runs in found))))
+	axes = list(dict.fromkeys(key for _, keys, _ in found for key in keys))
+	runs = []
+	for name, _, of in found:
+		runs += [dataclasses.replace(run, values={SET: name, **{key: run.values.get(key, NOT_VARIED) for key in axes}}) for run in of]
+	return [SET, *axes], runs
+
+
+def _designed(given, base, folder, first):
+	"""(axes, runs) of one design: axes, how they combine, seeds; runs are numbered from ``first``."""
+	axes = _axes(given.get("axes"), base, folder)
 	seeds = seedsOf(given.get("seeds"), base)
 	runs = []
-	for number, (values, seed) in enumerate(itertools.product(_combined(axes, given.get("combine", "product")), seeds), 1):
+	for number, (values, seed) in enumerate(itertools.product(_combined(axes, given.get("combine", "product")), seeds), first):
 		runs.append(_run(number, values, seed, base))
 	for key in axes:
 		if all(stageOf(key, run.config) is None for run in runs):
 			raise ConfigError(f"axes.{key}", axes[key], "changes no result of these tests", "take it out")
 	if len(seeds) > 1 and all(stageOf(SEED, run.config) is None for run in runs):
 		raise ConfigError("seeds", seeds, "change nothing, the packing is a file", "take them out, or give specimen.gradation")
-	return Study(titleOf(given, path), list(axes), runs, attemptsOf(given.get("attempts", 2)), given)
+	return list(axes), runs
 
 
 def wantsPage(given):
@@ -104,10 +146,15 @@ def baseOf(given, folder):
 		config = Config.of(base, folder)
 	else:
 		raise ConfigError("study.base", base, "is no configuration", f"give {KEYS['base']}")
+	return derived(config, _changes(given, folder))
+
+
+def _changes(given, folder):
+	"""The key ``changes`` of a study or a set."""
 	changes = given.get("changes", {})
 	if not isinstance(changes, dict):
 		raise ConfigError("study.changes", changes, "is not a mapping of keys", "write 'key: value' lines")
-	return derived(config, resolved(changes, folder))
+	return resolved(changes, folder)
 
 
 def resolved(changes, folder):

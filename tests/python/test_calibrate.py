@@ -14,9 +14,13 @@ from hexmembrane.laboratory.curve import Curve, Series
 
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT / "scripts" / "calibrate.d"), str(ROOT / "scripts" / "sweep.d")]
-calibrate, calibrationfile, likelihood, report, sampling = (importlib.import_module(name) for name in ("calibrate", "calibrationfile", "likelihood", "report", "sampling"))
+calibrate, calibrationfile, evaluate, inside, likelihood, report, sampling = (
+	importlib.import_module(name) for name in ("calibrate", "calibrationfile", "evaluate", "inside", "likelihood", "report", "sampling")
+)
 
 STRAIN = numpy.linspace(0, 0.15, 61)
+#: Columns of records.csv that a laboratory's curve is compared with.
+STRAINED = "axial_strain [-]", "q_cell [Pa]", "sigma3_target [Pa]", "volumetric_strain_volume [-]"
 RANGES = {"specimen.friction": {"low": 0.2, "high": 0.8}, "specimen.rollingFriction": {"low": 0.0, "high": 0.5}}
 
 
@@ -89,7 +93,7 @@ def search(folder, **changes):
 	folder.mkdir(exist_ok=True)
 	calibration = calibrationfile.load(write(folder, **changes))
 	out = folder / "out"
-	assert calibrate.calibrate(calibration, out, argparse.Namespace(again=False), lambda text: None) == 0
+	assert calibrate.calibrate(calibration, out, argparse.Namespace(again=False, inside=False), lambda text: None) == 0
 	return out
 
 
@@ -219,3 +223,46 @@ def test_likelihood():
 	apart = numpy.full(likelihood.POINTS, 0.3)
 	assert logs[0] - logs[1] == pytest.approx(0.5 * apart @ numpy.linalg.solve(covariance, apart), rel=1e-5)
 	assert logs[2] == logs[3] == -numpy.inf
+
+
+def test_gapsAreNotCompared():
+	"""A straight line over a gap of the readings is no measurement; evenly coarse readings have no gap."""
+	dense = numpy.concatenate([[0.0], numpy.linspace(0.04, 0.1, 31)])
+	for strain, least in ((dense, 0.04), (numpy.linspace(0, 0.1, 6), 0.004)):
+		target = likelihood.targets({"c": Curve("c", {"stress_ratio": Series(strain, 1 + strain)}, [])}, {"c": 0.1})[0]
+		assert target.strain[0] == pytest.approx(least, abs=0.004) and target.strain[-1] == pytest.approx(0.1)
+
+
+def test_inside(tmp_path, monkeypatch):
+	"""Tests in one process: none is run twice, one that was killed is begun anew, one that kills each time fails, a failed one is told."""
+	calibration, ran = calibrationfile.load(write(tmp_path, seeds=2)), []
+
+	def run(config, out, quiet):
+		ran.append(config.specimen.seed)
+		if config.specimen.seed == 2:
+			raise RuntimeError("no rest")
+		out.mkdir()
+		columns = ["stage", "step", *STRAINED]
+		rows = [["shear", 1, e, 1e5 * (r - 1), 1e5, v] for e, r, v in zip(STRAIN, *(one.value for one in soil(0.5, 0.2).values()))]
+		(out / "records.csv").write_text("\n".join(",".join(map(str, row)) for row in (columns, *rows)) + "\n", encoding="utf-8")
+
+	monkeypatch.setattr(inside, "run", run)
+	said = []
+	tests = evaluate.Inside(calibration, tmp_path, argparse.Namespace(again=False), said.append)
+	sets = [("00.0000", numpy.array([0.5, 0.5]))]
+	place = tests.folder / inside.RUNS / "00.0000-lab-1"
+	place.mkdir(parents=True)
+	(place / inside.BEGUN).write_text('{"attempts": 1}', encoding="utf-8")
+	tests.run(sets)
+	tests.run(sets)
+	assert ran == [1, 2] and sorted(path.name for path in place.iterdir()) == sorted([inside.BEGUN, inside.RESULT, "records.csv"])
+	found, failed = tests.series(sets)
+	assert found["00.0000"]["lab"][0]["stress_ratio"].value == pytest.approx(soil(0.5, 0.2)["stress_ratio"].value)
+	assert failed["00.0000"] == ["00.0000-lab-2: failed: no rest"] and "no rest" in said[1]
+	tests._arguments.again = True
+	tests.run(sets)  # begun a second time
+	assert ran == [1, 2, 2]
+	(place / inside.RESULT).unlink()
+	(place / inside.BEGUN).write_text('{"attempts": 2}', encoding="utf-8")
+	tests.run(sets)
+	assert ran == [1, 2, 2] and "has ended in it 2 times" in said[-1]

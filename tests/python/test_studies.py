@@ -9,8 +9,9 @@ import re
 
 import numpy
 import pytest
+from hexmembrane import configuration
 from hexmembrane.output import records
-from hexmembrane.run import states
+from hexmembrane.run import run, states
 from hexmembrane.scene.handles import Scene
 from PIL import Image
 
@@ -107,10 +108,37 @@ def test_packingStudy():
 	assert len(reached) == 3 and "fix: " in reached[1] and "coordination" in reached[2]
 
 
-def test_insideFigure(tmp_path):
-	lines = study("examples/paper/inside_figure.py", tmp_path)
-	rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
-	assert [row[0] for row in rows[2:]] == ["flexible-150-s1", "rigid-150-s1"] and all(len(row) == len(rows[0]) for row in rows)
-	for name in ("clouds-150-s1/shear", "clouds-150-s1/porosity", "bulge-rigid-150-s1"):
-		assert min(Image.open(tmp_path / f"{name}.png").size) > 300, name
-	assert len(list((tmp_path / "clouds-150-s1").glob("*.vtp"))) == 6
+INSIDE = {
+	"specimen": {"grains": 300, "porosity": 0.44},
+	"membrane": {"particleRadius": 2.5e-3, "thickness": 1.0e-3},  # as much thicker as the grains are larger
+	"shear": {"strain": 0.02, "velocity": 0.08},
+	"consolidation": {"unbalanced": 5e-3, "tolerance": 0.1},
+	"output": {"records": 10, "vtkEvery": 0, "checkpointEvery": 0},
+	"measure": {"bands": True, "replicates": 3, "strains": [0, 0.01, 0.02], "spacing": 0.012, "radius": 0.01, "slices": 6},
+}
+
+
+def test_insideTheStudysTests(O, tmp_path, capsys):
+	"""From a study's table of runs, of which one is not done, to the tables and pictures."""
+	rows = ["run,set,boundary,consolidation.pressure,seed,status,folder", "0003,boundary,wall,150000.0,2,missing: shear has not ended,third", "0004,size,-,150000.0,1,done,no"]
+	for number, kind in enumerate(("membrane", "wall"), 1):
+		O.reset()
+		config = configuration.load(ROOT / "examples" / "paper" / "flexible-150.yaml")
+		run(configuration.derived(config, {"boundary": kind, **INSIDE}), tmp_path / kind, quiet=True)
+		rows.append(f"{number:04d},boundary,{kind},150000.0,1,done,{kind}")
+	(tmp_path / "runs.csv").write_text("\n".join(rows) + "\n")
+	spec = importlib.util.spec_from_file_location("inside", ROOT / "examples" / "paper" / "study" / "inside.py")
+	inside = importlib.util.module_from_spec(spec)
+	spec.loader.exec_module(inside)
+	out = tmp_path / "out"
+	inside.main([str(tmp_path), str(out)])
+	printed = [[cell.strip() for cell in line.strip("|").split("|")] for line in capsys.readouterr().out.splitlines() if line.startswith("|")]
+	assert [row[0] for row in printed[2:]] == ["flexible-150-s1", "rigid-150-s1"] and all(len(row) == len(printed[0]) for row in printed)
+	for name in ("150-s1/shear", "150-s1/porosity", "bulge", "index"):
+		assert min(Image.open(out / f"{name}.png").size) > 300, name
+	assert len(list((out / "150-s1").glob("*.vtp"))) == 6
+	assert [line.split(",")[:3] for line in (out / "groups.csv").read_text().splitlines()[1:]] == [["membrane", "150", "1"], ["wall", "150", "1"]]
+	(tmp_path / "runs.csv").write_text(rows[0] + "\n")
+	with pytest.raises(SystemExit):
+		inside.main([str(tmp_path), str(out)])
+	assert "no test of the set 'boundary' is done; fix: " in capsys.readouterr().err

@@ -121,6 +121,15 @@ def test_list(tmp_path):
 	assert [tuple(run.values.values()) for run in study.runs] == [(0.3, 0.1), (0.5, 0.2)]
 
 
+def test_setsShareWhatTheyHaveInCommon(tmp_path):
+	sets = {"grains": {"axes": {"specimen.friction": [0.3, 0.5]}, "seeds": 2}, "plain one": {"changes": {"specimen": {"friction": 0.5}}}}
+	study = studyfile.load(write(tmp_path, sets=sets))
+	assert [run.name for run in study.runs] == ["0001", "0002", "0003", "0004", "0005"] and study.axes == ["set", "specimen.friction"]
+	assert [list(run.values.values()) for run in study.runs[3:]] == [["grains", 0.5], ["plain one", "-"]] and study.runs[4].config.specimen.friction == 0.5
+	plan, _ = plans.make(study)
+	assert plan["runs"][2]["stages"] == plan["runs"][4]["stages"] and len(plan["jobs"]) == 2 + 2 + 4
+
+
 def test_accuracyIsSettledBeforeAnythingIsNamed(tmp_path):
 	changes = {"accuracy": 0.5, "specimen": {"grains": 2000, "emod": 4e7}}
 	(tmp_path / "sand.csv").write_text(GRADATION)
@@ -149,6 +158,12 @@ def test_accuracyIsSettledBeforeAnythingIsNamed(tmp_path):
 		({"attempts": 0}, "whole number from 1"),
 		({"report": 1}, "study.report = 1: is neither true nor false"),
 		({"base": 3}, "is no configuration"),
+		({"sets": {}}, "study.sets.*are no sets"),
+		({"sets": {"a": 1}}, "sets.a = 1: is not a mapping"),
+		({"sets": {"a/b": {}}}, "is no name of a set"),
+		({"sets": {"a": {"axis": {}}}}, "sets.a.axis.*did you mean 'axes'"),
+		({"sets": {"a": {}}, "seeds": 3}, "study.seeds = 3: stands beside sets"),
+		({"sets": {"a": {"axes": {"title": ["a", "b"]}}}}, "changes no result"),
 	],
 )
 def test_badStudies(tmp_path, study, message):

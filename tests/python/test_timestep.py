@@ -10,19 +10,19 @@ from hexmembrane.configuration.specimen import Specimen
 from hexmembrane.scene import timestep
 
 X = numpy.array([[1.0, 0, 0]])
-NONE = numpy.empty((0, 2), int), numpy.empty((0, 3)), numpy.empty((0, 3)), numpy.empty((0, 2))
+NONE = numpy.empty((0, 2), int), numpy.empty((0, 3)), numpy.empty((0, 4)), numpy.empty((0, 2))
 
 
 def oneSpring(count, pair, mass, kn=1e5):
 	"""Bound of bodies on one spring without shear."""
-	return timestep.contactStep(numpy.array([pair]), X, numpy.array([[kn, 0.0, 0.0]]), numpy.zeros((1, 2)), numpy.array(mass), numpy.ones(count))
+	return timestep.contactStep(numpy.array([pair]), X, numpy.array([[kn, 0.0, 0.0, 0.0]]), numpy.zeros((1, 2)), numpy.array(mass), numpy.ones(count))
 
 
 def assembled(pairs, normals, stiffness, arms, mass, inertia):
 	"""2/omega of the whole system: its 6N x 6N stiffness from the motion at each contact, divided by the roots of the masses."""
 	n = len(mass)
 	total = numpy.zeros((6 * n, 6 * n))
-	for (i, j), normal, (kn, ks, kr), (armI, armJ) in zip(pairs, normals, stiffness, arms):
+	for (i, j), normal, (kn, ks, kr, kt), (armI, armJ) in zip(pairs, normals, stiffness, arms):
 		slide, bend = numpy.zeros((3, 6 * n)), numpy.zeros((3, 6 * n))
 		for body, sign, arm in ((i, -1, armI * normal), (j, 1, -armJ * normal)):
 			slide[:, 6 * body : 6 * body + 3] += sign * numpy.eye(3)
@@ -30,7 +30,7 @@ def assembled(pairs, normals, stiffness, arms, mass, inertia):
 			bend[:, 6 * body + 3 : 6 * body + 6] += sign * numpy.eye(3)
 		along = numpy.outer(normal, normal)
 		across = numpy.eye(3) - along
-		total += slide.T @ (kn * along + ks * across) @ slide + kr * bend.T @ across @ bend
+		total += slide.T @ (kn * along + ks * across) @ slide + bend.T @ (kr * across + kt * along) @ bend
 	root = numpy.column_stack([numpy.repeat(mass[:, None], 3, 1), numpy.repeat(inertia[:, None], 3, 1)]).ravel() ** -0.5
 	return 2 / math.sqrt(numpy.linalg.eigvalsh(root[:, None] * total * root)[-1])
 
@@ -48,7 +48,7 @@ def faceCentred(ratio, cells=2):
 				normals.append(branch / numpy.linalg.norm(branch))
 	assert len(pairs) == 6 * len(places)
 	m, n, radius, mass = len(pairs), len(places), 1e-3, 1e-5
-	stiffness = numpy.tile([1e5, 1e5 / ratio, 0.0], (m, 1))
+	stiffness = numpy.tile([1e5, 1e5 / ratio, 0.0, 0.0], (m, 1))
 	inertia = numpy.full(n, 0.4 * mass * radius**2)
 	return numpy.array(pairs), numpy.array(normals), stiffness, numpy.full((m, 2), radius), numpy.full(n, mass), inertia
 
@@ -80,7 +80,7 @@ def test_neverAboveTheTrueOne(ratio, rolling):
 		mass = 1e4 * radius**3
 		kn = random.uniform(1e4, 1e5, m)
 		arms = radius[pairs]
-		stiffness = numpy.column_stack([kn, kn / ratio, rolling * kn / ratio * arms.min(axis=1) ** 2])
+		stiffness = numpy.column_stack([kn, kn / ratio, *(factor * kn / ratio * arms.min(axis=1) ** 2 for factor in (rolling, 0.5 * rolling))])
 		system = pairs, normals, stiffness, arms, mass, 0.4 * mass * radius**2
 		true = assembled(*system)
 		assert 0.6 * true < timestep.contactStep(*system) <= true * (1 + 1e-12)
@@ -106,7 +106,7 @@ def test_freeAndFixedBodies():
 
 def test_blockedRotationIsLeftOut():
 	"""A frictional contact of spheres that cannot turn: ks pushes, it turns nothing."""
-	system = numpy.array([[0, 1]]), X, numpy.array([[1.0, 4.0, 0.0]]), numpy.ones((1, 2)), numpy.ones(2)
+	system = numpy.array([[0, 1]]), X, numpy.array([[1.0, 4.0, 0.0, 0.0]]), numpy.ones((1, 2)), numpy.ones(2)
 	assert timestep.contactStep(*system, numpy.full(2, math.inf)) == pytest.approx(2 / math.sqrt(2 * 4.0), rel=1e-12)
 	assert timestep.contactStep(*system, numpy.full(2, 0.4)) == pytest.approx(2 / math.sqrt(2 * 4.0 * (1 + 1 / 0.4)), rel=1e-12)
 
@@ -121,7 +121,7 @@ def test_grainStep(ratio):
 	pairs = numpy.array([(0, k) for k in range(1, 9)])
 	masses = numpy.full(9, mass)
 	bound = timestep.contactStep(
-		pairs, normals, numpy.tile([kn, kn / ratio, 0.0], (8, 1)), numpy.full((8, 2), radius), masses, 0.4 * masses * radius**2
+		pairs, normals, numpy.tile([kn, kn / ratio, 0.0, 0.0], (8, 1)), numpy.full((8, 2), radius), masses, 0.4 * masses * radius**2
 	)
 	assert timestep.grainStep(specimen, radius) == pytest.approx(bound, rel=1e-12)
 

@@ -68,7 +68,7 @@ double CriticalStep::compute(double tolerance, int most) const
 	for (std::size_t i = 0; i < count; ++i)
 		for (int a = 0; a < 3; ++a) {
 			x[i][a] = inverseMass[i] > 0 ? random.uniform(-1, 1) : 0;
-			w[i][a] = 0;
+			w[i][a] = turnStart > 0 && inverseInertia[i] > 0 ? turnStart * random.uniform(-1, 1) : 0;
 		}
 	// in coordinates scaled by the roots of mass and inertia the matrix is symmetric; the norms are those of kinetic energy
 	const auto norm = [&](const std::vector<Vec3>& u, const std::vector<Vec3>& v) {
@@ -96,7 +96,7 @@ double CriticalStep::compute(double tolerance, int most) const
 			}
 			const double along = s.normal.dot(slide);
 			const Vec3 force = s.law.kn * along * s.normal + s.law.ks * (slide - along * s.normal); // on i, pulling it after j
-			const Vec3 moment = answerTo(turn, s.law, s.normal);
+			const Vec3 moment = answerTo(turn, s.law, s.normal) + s.twist * turn.dot(s.normal) * s.normal;
 			f[s.i] += force;
 			t[s.i] += s.arm1.cross(force) + moment;
 			if (s.j < 0) continue;

@@ -10,6 +10,7 @@ import os
 from typing import List, Optional
 
 from hexmembrane.configuration import balls
+from hexmembrane.configuration.cement import Cement
 from hexmembrane.configuration.contacts import Contacts
 from hexmembrane.configuration.lab import Lab
 from hexmembrane.configuration.measure import Measure
@@ -330,6 +331,7 @@ class Config:
 	membrane: Membrane = section(Membrane, "the flexible membrane; particleRadius and placement also say the packing's radius")
 	wall: Wall = section(Wall, "the rigid wall, used with boundary: wall")
 	platens: Platens = section(Platens, "the end platens")
+	cement: Cement = section(Cement, "cement at the contacts of grains: parallel bonds")
 	contacts: Contacts = section(Contacts, "contacts of a pair of groups with a stiffness or friction of their own")
 	consolidation: Consolidation = section(Consolidation, "isotropic consolidation")
 	shear: Shear = section(Shear, "shearing")

@@ -2,7 +2,8 @@
 """PFC's names of properties and what they are here: who writes one gets an error with the key. Uses nothing of YADE."""
 
 _BONDS = "grains of a configuration have no contact bonds; a script has LinearMat.cbTensile and cbShear, membrane.tensileStrength and shearStrength are the sheet's"
-_PARALLEL = "there is no parallel bond here"
+_CEMENT = {"pb_ten": "tensileStrength", "pb_coh": "cohesion", "pb_fa": "frictionAngle", "pb_rmul": "radiusMultiplier", "pb_mcf": "momentFactor"}
+_CEMENT.update({f"pb_{name}": name for name in ("kn", "ks", "emod", "kratio")})
 _DASHPOT = "contacts have no dashpots here; numerics.damping is PFC's local damping"
 
 #: PFC's name -> the key here by section, '' for every other section.
@@ -21,7 +22,7 @@ NAMES = {
 	"kratio": {"membrane": "membrane.contactKn and contactKs; without them the membrane has the grains' stiffness", "": "specimen.kratio, platens.kratio or wall.kratio"},
 	"cb_tenf": {"membrane": "membrane.tensileStrength", "": _BONDS},
 	"cb_shearf": {"membrane": "membrane.shearStrength", "": _BONDS},
-	**{name: {"": _PARALLEL} for name in ("pb_kn", "pb_ks", "pb_ten", "pb_coh", "pb_fa", "pb_rmul", "pb_mcf", "pb_emod", "pb_kratio")},
+	**{name: {"cement": here, "membrane": "nothing: bonds of the sheet have no moments, membrane.bendingStiffness is its bending", "": f"cement.{here}"} for name, here in _CEMENT.items()},
 	**{name: {"": _DASHPOT} for name in ("dp_nratio", "dp_sratio", "dp_mode")},
 	"rgap": {"": "nothing: contacts begin where bodies touch"},
 	"porosity": {"": "specimen.porosity"},

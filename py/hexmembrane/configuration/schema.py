@@ -24,7 +24,8 @@ _SHOWN = 200
 LONGEST_TEXT, LONGEST_PATH = 200, 4000
 #: What a number other than 0 is at least and at most in size, by unit: beyond it is a slip of the unit, and products of such numbers leave the range of floats.
 SIZES = {
-	"m": (1e-9, 1e4), "m/s": (1e-12, 1e4), "s": (1e-15, 1e9), "Pa": (1e-3, 1e15), "N": (1e-12, 1e12), "N/m": (1e-6, 1e15), "N m": (1e-18, 1e9), "kg/m3": (1e-3, 1e9), "": (1e-15, 1e9)
+	"m": (1e-9, 1e4), "m/s": (1e-12, 1e4), "s": (1e-15, 1e9), "Pa": (1e-3, 1e15), "N": (1e-12, 1e12), "N/m": (1e-6, 1e15), "N m": (1e-18, 1e9), "kg/m3": (1e-3, 1e9),
+	"N/m3": (1e-3, 1e21), "deg": (1e-6, 360), "": (1e-15, 1e9)
 }  # fmt: skip
 
 

@@ -12,7 +12,9 @@ from yade import O
 WORK = ("platenWork", "pressureWork", "radialServoWork", "oRingWork", "wallWork")
 #: YADE's names of what the membrane stores: in its bonds, by bending, where a fold meets itself, and where grains press on the sheet between its spheres.
 MEMBRANE = ("elastMembrane", "elastBending", "elastSelfContact", "elastFacet")
-#: YADE's names of what contacts dissipate: sliding, rolling, and the elastic energy that breaking contact bonds set free.
+#: YADE's names of what the soil stores: in contacts, and in the bonds of its cement.
+SOIL = ("elastPotential", "elastGrainBonds")
+#: YADE's names of what contacts dissipate: sliding, rolling, and the elastic energy that breaking bonds set free.
 CONTACT_DISSIPATION = ("plastDissip", "rollDissip", "bondDissip")
 
 
@@ -27,7 +29,7 @@ def current():
 		return sum(tracked.get(name, 0.0) for name in names)
 
 	return {
-		"elastic": total("elastPotential"),
+		"elastic": total(*SOIL),
 		"membrane": total(*MEMBRANE),
 		"kinetic": total("kinetic"),
 		"friction": total(*CONTACT_DISSIPATION),

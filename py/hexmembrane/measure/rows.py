@@ -91,8 +91,8 @@ def unbalanced(ids, contactForce):
 	return float(numpy.linalg.norm(BodyArrays.forces(ids), axis=1).mean()) / contactForce if contactForce > 0 else 1.0
 
 
-def row(scene, grains, reference, stage, elapsed):
-	"""The measured row as a dict, of the last step in either tier; see ``COLUMNS`` of :mod:`hexmembrane.output.records`."""
+def row(scene, grains, reference, stage, elapsed, cement=False):
+	"""The measured row as a dict, of the last step in either tier; see ``columns(cement)`` of :mod:`hexmembrane.output.records`."""
 	measured = scene.measure.stress()
 	boundary = scene.lateralBoundary
 	bottom, top = scene.faces()
@@ -139,7 +139,14 @@ def row(scene, grains, reference, stage, elapsed):
 		"membrane_axial_end": loads.axialPullEnd,
 		"sigma3_membrane": loads.radialPressure,
 		"sigma3_distance": (transmitted[3] - boundary.pressure) / pressure if pressure > 0 else 0.0,
+		**(_cement(scene.cement) if cement else {}),
 	}
+
+
+def _cement(bonds):
+	"""The columns of cement; ``bonds``: the GrainBonds, None: not there yet."""
+	counts = (bonds.count, bonds.tensileBreaks, bonds.shearBreaks) if bonds else (0, 0, 0)
+	return dict(zip(("cement_bonds", "cement_broken_tension", "cement_broken_shear"), counts))
 
 
 def _energies(now, start):

@@ -141,7 +141,7 @@ def picture(path, clouds, name, titles=(), rows=()):
 		low, high = -max(abs(low), abs(high)), max(abs(low), abs(high))
 	count = max(map(len, clouds))
 	ratio = max(one.height[-1] / (one.along[-1] - one.along[0]) for row in clouds for one in row)
-	figure = Figure(figsize=(1.2 + 1.9 * count, 0.5 + len(clouds) * (0.35 + 1.6 * ratio)), layout="constrained")
+	figure = Figure(figsize=(1.2 + 1.9 * count, 0.6 + len(clouds) * (0.2 + 1.25 * ratio)), layout="constrained")
 	FigureCanvasAgg(figure)
 	axes = figure.subplots(len(clouds), count, squeeze=False, sharex=True, sharey=True)
 	for i, row in enumerate(clouds):
@@ -175,11 +175,18 @@ def writeVtk(path, one, section):
 	vtk.write(path, grid.reshape(-1, 3)[inside], triangles, {name: values.ravel()[inside] for name, values in one.values.items()})
 
 
-def draw(folders, out, strains=(None,), section=None, quantities=tuple(QUANTITIES)):
+def strainsOf(folder):
+	"""The axial strains at which a test kept its fields, in fields.h5, to 1e-4."""
+	with fields.opened(pathlib.Path(folder) / "fields.h5") as file:
+		return [round(float(file[name].attrs["axial_strain"]), 4) for name in fields.states(file)]
+
+
+def draw(folders, out, strains=(None,), section=None, quantities=tuple(QUANTITIES), names=None):
 	"""Clouds of tests at strains: one PNG a quantity, ``out``/NAME.png, one row a test; and ``out``/TEST-STRAIN.vtp.
 
 	:param folders: of tests, with fields.h5. :param out: folder, made if need be. :param strains: axial strains, None: the last state.
 	:param section: the same for all; None: of each test its band's, x without one. :param quantities: names of :data:`QUANTITIES`.
+	:param names: of the tests; None: their folders'.
 	:returns: the files.
 	:raises ValueError: as :func:`cloud`.
 	"""
@@ -188,7 +195,7 @@ def draw(folders, out, strains=(None,), section=None, quantities=tuple(QUANTITIE
 	rows = [[cloud(pathlib.Path(folder) / "fields.h5", strain, at, quantities) for strain in strains] for folder, at in zip(folders, sections)]
 	out.mkdir(parents=True, exist_ok=True)
 	titles = ["last" if strain is None else f"{100 * strain:g} %" for strain in strains]
-	names = [pathlib.Path(folder).name for folder in folders]
+	names = names or [pathlib.Path(folder).name for folder in folders]
 	files = []
 	for quantity in quantities:
 		files.append(out / f"{quantity}.png")

@@ -2,7 +2,7 @@
 """The rows of records.csv: what each column is, its unit, sign and source, stated once, here.
 
 Every row is written whole and flushed, so that a killed run leaves a readable file; a resumed run cuts the rows after its
-checkpoint and goes on. Strains count from the start of the row's stage (``stage`` column). Needs no YADE.
+checkpoint and goes on. A test with cement has some columns more. Strains count from the start of the row's stage (``stage`` column). Needs no YADE.
 """
 
 from hexmembrane.configuration.stages import ISOTROPIC
@@ -133,14 +133,35 @@ COLUMNS = (
 	),
 )
 
+#: Columns of a test with cement, behind the others.
+CEMENT = (
+	Column("cement_bonds", "", "with cement: bonds between grains that hold"),
+	Column("cement_broken_tension", "", "with cement: bonds that broke in tension so far"),
+	Column("cement_broken_shear", "", "with cement: bonds that broke in shear so far"),
+)
+
 _TEXT = ("stage",)
+
+
+def columns(cement):
+	"""The columns of a test with or without cement."""
+	return COLUMNS + CEMENT if cement else COLUMNS
+
+
+def _columnsOf(path):
+	"""The columns that a records.csv has, those without cement where it cannot be read: whoever reads it says so."""
+	try:
+		with open(path, encoding="utf-8", errors="replace") as file:
+			return columns(CEMENT[0].header in file.readline().rstrip("\n").split(","))
+	except OSError:
+		return COLUMNS
 
 
 class Kept(tables.Kept):
 	"""The first bytes of a records.csv, see :class:`hexmembrane.output.tables.Kept`."""
 
 	def __init__(self, path, size):
-		super().__init__(path, COLUMNS, size, "records")
+		super().__init__(path, _columnsOf(path), size, "records")
 
 	def count(self, stage):
 		"""Rows of a stage."""
@@ -148,10 +169,15 @@ class Kept(tables.Kept):
 
 
 class Records(tables.Table):
-	"""records.csv being written, see :class:`hexmembrane.output.tables.Table`."""
+	"""records.csv being written, see :class:`hexmembrane.output.tables.Table`.
 
-	def __init__(self, path, keep=None):
-		super().__init__(path, COLUMNS, keep, "records")
+	:param cement: whether it has the columns of cement; of an existing file its header says so. Attribute: ``cement``.
+	"""
+
+	def __init__(self, path, keep=None, cement=False):
+		found = columns(cement) if keep is None else _columnsOf(path)
+		self.cement = len(found) > len(COLUMNS)
+		super().__init__(path, found, keep, "records")
 
 
 def read(path, damage=None):
@@ -170,4 +196,4 @@ def sheared(table):
 
 def markdown():
 	"""The table of columns for the documentation."""
-	return tables.markdown(COLUMNS)
+	return tables.markdown(COLUMNS + CEMENT)

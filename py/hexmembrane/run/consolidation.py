@@ -5,6 +5,7 @@ import math
 
 from yade import O
 
+from hexmembrane.configuration.cement import PACKED
 from hexmembrane.configuration.config import restTolerance
 from hexmembrane.run.progress import Progress
 from hexmembrane.run.stage import RAMP_PARTS, Stage, StageError
@@ -37,6 +38,7 @@ class Consolidation(Stage):
 		pairs = self.config.contacts.frictions(platens=smoother)
 		test.scene.setFriction(grains if own is None else own, platens if smoother is None else smoother, pairs)
 		test.enter(self.planned.label)
+		self._bond(PACKED)
 		test.checkpoint()
 
 	def run(self):

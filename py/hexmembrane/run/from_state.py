@@ -5,6 +5,7 @@ Beside the state lies the ``config.yaml`` of the test that made it. A key that a
 gets the state's value. Keys that act from here on are applied. What can be read from the state itself is compared in any case.
 """
 
+import math
 import pathlib
 
 import numpy
@@ -44,7 +45,7 @@ def adopt(config, path, say):
 		return None
 	own, taken = read(beside), []
 	for section, keys, values in _sections(config, own):
-		if section in _APPLIED_SECTIONS or _isOther(section, config, own, path):
+		if section in _APPLIED_SECTIONS or _isOther(section, config, own, path) or section == "cement" and not _isCemented(values):
 			continue
 		for name, value in vars(keys).items():
 			key = f"{section}.{name}"
@@ -75,6 +76,11 @@ def _isOther(section, config, own, path):
 	if section not in ("membrane", "wall"):
 		return False
 	return section not in boundaries(config) or section == "membrane" and pathlib.Path(path).name in _inTheWall(own)
+
+
+def _isCemented(values):
+	"""Whether a state has cement already, or will have where its own test goes on; ``values``: the section of its configuration."""
+	return values.get("emod") is not None or values.get("kn") is not None
 
 
 def _inTheWall(own):
@@ -150,6 +156,10 @@ def _facts(config, boundary):
 			found.append((f"{owner}.{names.get(name, name) if owner == section else name}", value, getattr(material, name)))
 	keys = config.specimen
 	found += [("specimen.density", keys.density, O.materials["grain"].density), ("specimen.rollingFriction", keys.rollingFriction, O.materials["grain"].rollingFriction)]
+	if cement := Scene().cement:
+		names = config.cement.properties() if config.cement.given else ()
+		has = {name: math.degrees(cement.frictionAngle) if name == "frictionAngle" else getattr(cement, name) for name in names}
+		found += [(f"cement.{name}", getattr(config.cement, name), value) for name, value in has.items()]
 	if boundary.name == "wall":
 		servo = boundary.servo
 		return [*found, ("wall.damping", config.wall.damping, servo.damping), ("wall.tolerance", config.wall.tolerance, servo.tolerance)]

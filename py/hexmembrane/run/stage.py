@@ -3,8 +3,12 @@
 
 import abc
 
+from hexmembrane.configuration.cement import CONSOLIDATED
 from hexmembrane.run.estimate import RISE
+from hexmembrane.run.progress import tell
 from hexmembrane.scene import timestep
+from hexmembrane.scene.builder import checkTimeStep
+from hexmembrane.scene.cement import bondGrains
 
 #: Parts that a smooth change of the pressure is divided into; each is 1 % of the time.
 RAMP_PARTS = 100
@@ -57,3 +61,21 @@ class Stage(abc.ABC):
 		test.scene.holdRadialLoad()
 		test.scene.setFriction(self.config.specimen.friction, self.config.platens.friction, self.config.contacts.frictions())
 		test.scene.setTimeLimit(None)
+		self._bond(CONSOLIDATED)
+
+	def _bond(self, moment):
+		"""Bond the grains where this is the moment for it. :raises StageError: it cannot be done."""
+		if self.config.cement.when != moment:
+			return
+		test = self.test
+
+		def say(text):
+			if not test.quiet:
+				tell(text)
+
+		try:
+			if bondGrains(self.config, test.scene, say):
+				test.advance(1)  # bonds have no load in it; a scene that was just loaded knows its contacts then
+				checkTimeStep(self.config, test.scene, say)
+		except ValueError as error:
+			raise StageError(str(error)) from None

@@ -52,7 +52,7 @@ class TriaxialTest:
 		self.stage, self.rowCount, self.lastRow, self._earlier = "generated", 0, None, 0.0
 		if resumed is None:
 			self.stageStart, self.reference = {"step": O.iter, "time": O.time, "strain": 0.0}, rows.Reference.of(self.scene)
-			self.frames, self.records = Frames(self.out, config.output.contacts), Records(self.out / RECORDS)
+			self.frames, self.records = Frames(self.out, config.output.contacts), Records(self.out / RECORDS, cement=config.cement.given or self.scene.cement is not None)
 			self.inside = Inside(config, self.out)
 		else:
 			self._goOnFrom(resumed)
@@ -124,7 +124,7 @@ class TriaxialTest:
 
 	def row(self):
 		"""Measure, write and return a row of the records."""
-		self.lastRow = rows.row(self.scene, self.grains, self.reference, self.stage, self.elapsed())
+		self.lastRow = rows.row(self.scene, self.grains, self.reference, self.stage, self.elapsed(), self.records.cement)
 		lost = rows.escaped(self.scene, self.grains)
 		if lost is not None:
 			raise StageError(

@@ -56,7 +56,8 @@ def putMembrane(config, scene, say):
 	for servo in servos:
 		servo.measure = measure
 	servos += builder.radialServo(config, soil.radii, measure, before)
-	inner = [*servos, *before, scene.bottomDrive, scene.topDrive, *after]
+	cement = [scene.cement] if scene.cement else []
+	inner = [*cement, *servos, *before, scene.bottomDrive, scene.topDrive, *after]
 	smallest = min(float(soil.radii.min()), parts.smallestRadius)
 	if scene.loop:
 		scene.loop.engines, scene.loop.skin = inner, config.numerics.skin * smallest

@@ -17,7 +17,7 @@ class Scene:
 
 	Attributes: ``lateralBoundary`` (a :class:`hexmembrane.scene.lateral_boundary.LateralBoundary`), ``guard`` (RunawayGuard, None without),
 	``bottomDrive`` and ``topDrive`` (the PlatenDrive of each end platen), ``axialServo`` and ``radialServo`` (SoilStressServo, None where the platen's force or the transmitted pressure is held),
-	``measure`` (a SoilMeasure), ``loop`` (the compact tier's engine, None in the reference tier).
+	``cement`` (the GrainBonds between grains, None without), ``measure`` (a SoilMeasure), ``loop`` (the compact tier's engine, None in the reference tier).
 
 	A scene of one's own will do. What it needs: two PlatenDrive, and either a RadialWallServo, or one each of MembraneBonds, MembranePressure and
 	MembraneORings; in ``O.engines``, or in those of a CompactLoop. Grains have masks without the membrane's bit 2.
@@ -39,6 +39,7 @@ class Scene:
 		servos = byType.get("SoilStressServo", ())
 		self.axialServo = next((servo for servo in servos if servo.drive), None)
 		self.radialServo = next((servo for servo in servos if servo.pressure), None)
+		self.cement = next(iter(byType.get("GrainBonds", ())), None)
 		self.measure = yade.SoilMeasure(bottomPlaten=self.bottomDrive.platen, topPlaten=self.topDrive.platen, **self.lateralBoundary.around)
 		self._half = [O.bodies[drive.platen].shape.height / 2 for drive in (self.bottomDrive, self.topDrive)]
 
@@ -59,6 +60,15 @@ class Scene:
 		"""Ids of the grains: spheres without the membrane's bit."""
 		return [b.id for b in O.bodies if isinstance(b.shape, yade.Sphere) and not b.mask & MASK]
 
+	def addCement(self, bonds):
+		"""Have an engine of bonds act, before all that measures."""
+		self.cement = bonds
+		if self.loop:
+			self.loop.engines = [bonds, *self.loop.engines]
+			return
+		before = next(k for k, engine in enumerate(O.engines) if isinstance(engine, yade.InteractionLoop)) + 1
+		O.engines = [*O.engines[:before], bonds, *O.engines[before:]]
+
 	def exportContacts(self):
 		"""See to it that ``O.interactions`` holds the contacts of the last step, in either tier."""
 		if self.loop:
@@ -77,7 +87,7 @@ class Scene:
 			return self.loop.criticalTimeStep()
 		square = numpy.zeros(len(O.bodies))
 		self.lateralBoundary.addFrequencySquare(square)
-		return timestep.contactStep(*_springs(), *_masses(), square)
+		return timestep.contactStep(*_springs(self.cement), *_masses(), square)
 
 	def setFriction(self, grains, platens, pairs=None):
 		"""Give the grains and the platens, and the contacts that they have, coefficients of friction; the lesser of two materials acts.
@@ -159,8 +169,8 @@ def compactLoop():
 	return next((engine for engine in O.engines if isinstance(engine, yade.CompactLoop)), None)
 
 
-def _springs():
-	"""The contacts in ``O`` as :func:`hexmembrane.scene.timestep.contactStep` takes them: pairs, normals, stiffness, arms."""
+def _springs(cement):
+	"""The contacts in ``O`` and the bonds as :func:`hexmembrane.scene.timestep.contactStep` takes them: pairs, normals, stiffness, arms."""
 	radii = numpy.zeros(len(O.bodies))
 	for body in O.bodies:
 		if isinstance(body.shape, yade.Sphere):
@@ -171,9 +181,10 @@ def _springs():
 		shear = phys.ks if phys.tangensOfFrictionAngle > 0 or phys.bonded else 0.0
 		pairs.append((contact.id1, contact.id2))
 		normals.append(tuple(contact.geom.normal))
-		stiffness.append((phys.kn, shear, phys.kr))
+		stiffness.append((phys.kn, shear, phys.kr, 0.0))
 	pairs = numpy.array(pairs, dtype=int).reshape(-1, 2)
-	return pairs, numpy.array(normals).reshape(-1, 3), numpy.array(stiffness).reshape(-1, 3), radii[pairs]
+	found = pairs, numpy.array(normals).reshape(-1, 3), numpy.array(stiffness).reshape(-1, 4), radii[pairs]
+	return [numpy.concatenate(parts) for parts in zip(found, cement.springs())] if cement else found
 
 
 def _masses():

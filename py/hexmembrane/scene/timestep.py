@@ -144,13 +144,13 @@ def contactStep(pairs, normals, stiffness, arms, mass, inertia, square=0.0):
 
 	A contact of bodies 1 and 2 has the elastic energy
 
-		E = kn/2 (n.(x2 - x1))^2 + ks/2 |p2 - p1|^2 + kr/2 |(w2 - w1)_t|^2,	p = x_t + l w x n
+		E = kn/2 (n.(x2 - x1))^2 + ks/2 |p2 - p1|^2 + kr/2 |(w2 - w1)_t|^2 + kt/2 (n.(w2 - w1))^2,	p = x_t + l w x n
 
 	with x and w a body's small displacement and rotation, n its own outward normal at the contact, l the arm from its centre to the contact
 	and t the part across n. Since |a - b|^2 <= (1 + s) |a|^2 + (1 + 1/s) |b|^2 for every s > 0, and with s = sqrt(m1/m2), E is at most the sum
 	over both ends of
 
-		(1 + sqrt(m/m'))/2 (kn (n.x)^2 + ks |p|^2 + kr |w_t|^2),	m the body's own mass, m' its partner's.
+		(1 + sqrt(m/m'))/2 (kn (n.x)^2 + ks |p|^2 + kr |w_t|^2 + kt (n.w)^2),	m the body's own mass, m' its partner's.
 
 	That has no terms between bodies: K <= blockdiag(D), with a 6x6 block D of each body, translation and rotation. So omega^2 is at most the
 	largest eigenvalue of D, in coordinates scaled by the roots of mass and inertia, over all bodies. For equal bodies the weight is 2, for a
@@ -162,7 +162,7 @@ def contactStep(pairs, normals, stiffness, arms, mass, inertia, square=0.0):
 
 	:param pairs: (M, 2) bodies of each contact.
 	:param normals: (M, 3) from the first body to the second.
-	:param stiffness: (M, 3) kn, ks [N/m] and kr [N m].
+	:param stiffness: (M, 4) kn, ks [N/m], kr and kt [N m], against bending and twisting.
 	:param arms: (M, 2) distances from the centres to the contact [m].
 	:param mass: (bodies,) [kg], inf for what does not move.
 	:param inertia: (bodies,) [kg m2], inf for what does not turn.
@@ -188,13 +188,13 @@ def _ends(normal, stiffness, arm, perRootMass, perRootInertia):
 	along = normal[:, :, None] * normal[:, None, :]
 	across = numpy.eye(3) - along
 	turn = numpy.stack([zero, z, -y, -z, zero, x, y, -x, zero], axis=1).reshape(-1, 3, 3)  # turn @ w = w x n
-	kn, ks, kr = (k[:, None, None] for k in stiffness.T)
+	kn, ks, kr, kt = (k[:, None, None] for k in stiffness.T)
 	linear = perRootMass[:, None, None]
 	angular = perRootInertia[:, None, None]
 	arm = arm[:, None, None]
 	blocks = numpy.empty((len(normal), 6, 6))
 	blocks[:, :3, :3] = linear**2 * (kn * along + ks * across)
-	blocks[:, 3:, 3:] = angular**2 * (ks * arm**2 + kr) * across
+	blocks[:, 3:, 3:] = angular**2 * ((ks * arm**2 + kr) * across + kt * along)
 	blocks[:, :3, 3:] = linear * angular * ks * arm * turn
 	blocks[:, 3:, :3] = blocks[:, :3, 3:].transpose(0, 2, 1)
 	return blocks

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The experiment on Toyoura sand in a short form, on made-up tests: predictions' tables, and whether known parameters come back."""
+
+import csv
+import importlib.util
+import itertools
+import json
+import math
+import pathlib
+
+import numpy
+import pytest
+from hexmembrane.laboratory.curve import Series
+from scipy.stats import qmc
+
+FOLDER = pathlib.Path(__file__).parents[2] / "examples" / "toyoura"
+
+
+def load(name):
+	spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
+	module = importlib.util.module_from_spec(spec)
+	spec.loader.exec_module(module)
+	return module
+
+
+predict, recovery = load("predict"), load("recovery")
+STRAIN = numpy.linspace(0, 0.135, 61)
+
+
+def made(friction, rolling, porosity, random):
+	"""A made-up test that hangs on three parameters, with a packing's scatter."""
+	peak = 1 + 2.2 * friction + 2 * rolling + 40 * (0.44 - porosity)
+	ratio = 1 + peak * STRAIN / (0.005 + STRAIN) * (1 - 0.8 * friction * STRAIN / 0.135) + 0.05 * random.normal()
+	volume = (0.2 + 0.5 * rolling + 6 * (0.44 - porosity)) * STRAIN + 0.001 * random.normal() * STRAIN / 0.1
+	return {"stress_ratio": Series(STRAIN, ratio), "volumetric_strain": Series(STRAIN, volume)}
+
+
+def test_conditions():
+	"""The laboratory's numbers; a denser sand is packed denser; draws go with the weights; one inertial number."""
+	assert predict.laboratory()[53] == pytest.approx({"pressure": 98e3, "void ratio": 0.671, "thickness": 3e-4, "angle": 42.3})
+	assert predict.ofLaboratory(53) == pytest.approx([42.3, -100 * -0.028903, 5.7805], abs=1e-3) and math.isnan(predict.ofLaboratory(61)[1])
+	assert predict.packed(0.43, predict.CALIBRATED) == pytest.approx(0.43)
+	assert predict.packed(0.43, 0.65) < 0.43 < predict.packed(0.43, 0.88) < 0.5
+
+
+def test_predictions(tmp_path, monkeypatch):
+	(tmp_path / "sets.csv").write_text(
+		"set,specimen.friction,specimen.rollingFriction,specimen.porosity,log_likelihood,weight,failed\n"
+		"00.0000,0.5,0.3,0.43,-1,0.75,\n00.0001,0.7,0.3,0.44,-2,0.25,\n00.0002,0.9,0.3,0.44,-inf,0.0,x\n",
+		encoding="utf-8",
+	)
+	assert sorted(one["specimen.friction"] for one in predict.draws(tmp_path, 4)) == [0.5, 0.5, 0.5, 0.7]
+	config = predict.calibrationfile.load(FOLDER / "calibration.yaml").tests["98 kPa"].config
+	study = predict.study(config, tmp_path, 2)
+	assert len(study.runs) == 2 * len(predict.TESTS) and len({run.name for run in study.runs}) == len(study.runs)
+	rates = {run.config.shear.velocity / math.sqrt(run.config.consolidation.pressure) for run in study.runs}
+	assert max(rates) == pytest.approx(min(rates))
+	random = numpy.random.default_rng(1)
+	found = {number: [made(0.6, 0.4, 0.44, random) for _ in range(3)] for number in predict.TESTS[:4]}
+	predict.tables(found, tmp_path, lambda text: None)
+	with open(tmp_path / "predictions.csv", encoding="utf-8") as file:
+		rows = list(csv.DictReader(file))
+	assert [int(row["test"]) for row in rows] == list(predict.TESTS[:4]) and float(rows[0]["peak friction angle [deg] laboratory"]) == 43.3
+	assert abs(float(rows[0]["volumetric strain at 10 % [%] ours"]) - 4) < 0.3 and (tmp_path / "predictions.png").is_file()
+
+
+def test_recovery(tmp_path, monkeypatch):
+	"""On made-up tests with little scatter the truth is in the intervals."""
+	points = qmc.Sobol(3, seed=2).random(32)
+	(tmp_path / "generations.json").write_text(json.dumps({"generations": [points.tolist()]}), encoding="utf-8")
+	random = numpy.random.default_rng(3)
+
+	def series(tests, sets):
+		values = [list(tests.calibration.values(point).values()) for _, point in sets]
+		return {name: {"98 kPa": [made(*own, random) for _ in range(2)]} for (name, _), own in zip(sets, values)}, {name: [] for name, _ in sets}
+
+	monkeypatch.setattr(recovery.evaluate.Inside, "series", series)
+	rows = recovery.trials(tmp_path, lambda text: None)
+	covered = [row[key][0] for row, key in itertools.product(rows, rows[0])]
+	assert len(rows) > 3 and numpy.mean(covered) > 0.85
+	assert numpy.median([abs(row["specimen.friction"][1]) for row in rows]) < 0.1
