@@ -76,8 +76,9 @@ def test_cementedSand(O, tmp_path, runHere):
 		assert broken[0] == 0 and 0 < broken[-1] < bonds[0] and (bonds + broken == bonds[0]).all()
 		assert max(found["q"]) > 1.1 * max(plain["q"][numpy.array(plain["stage"]) == "shear"])
 		assert abs(found["energy_error"]).max() < 0.02
+		moving = abs(found["inertia_axial"]).max()  # what is fast is seen half a step apart: without cement the sums meet as closely to what moves
 		for name in ("axial", "radial"):
-			assert abs(found[f"soil_{name}"] - found[f"boundary_{name}"] - found[f"inertia_{name}"]).max() < 1e-6 * 1e5
+			assert abs(found[f"soil_{name}"] - found[f"boundary_{name}"] - found[f"inertia_{name}"]).max() < 1e-4 * moving
 	before = (tmp_path / tier / "records.csv").read_text()
 	code, _, errors = runHere(file, "--out", tmp_path / tier, "--resume")
 	assert code == 0 and (tmp_path / tier / "records.csv").read_text() == before, errors
