@@ -101,6 +101,7 @@ TABLE = {
 	"platens.friction": (At(CONSOLIDATION, lambda config: config.platens.consolidationFriction is None), At(SHEAR)),
 	"platens.*": _ALWAYS[CONSOLIDATION],
 	"contacts.*": _ALWAYS[CONSOLIDATION],
+	"cement.*": (At(CONSOLIDATION, lambda config: config.cement.given),),
 	"consolidation.*": _ALWAYS[CONSOLIDATION],
 	"shear.strain": (At(CONSOLIDATION, lambda config: config.platens.thickness is None), At(SHEAR)),  # platens are as thick as they travel
 	"shear.pressureTolerance": (At(SHEAR, lambda config: config.shear.stopOutsideTolerance),),

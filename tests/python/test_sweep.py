@@ -82,6 +82,7 @@ def test_everyKeyIsInTheTable(base):
 		({"shear": {"strain": 0.01}}, SHEAR),
 		({"shear": {"velocity": 0.01}}, SHEAR),
 		({"platens": {"friction": 0.1}}, SHEAR),
+		({"cement": {"emod": 1e7, "kratio": 2, "tensileStrength": 1e5, "cohesion": 1e5}}, CONSOLIDATION),
 		({"tier": "reference"}, CONSOLIDATION),
 		({"measure": {"slices": 5}}, SHEAR),
 		({"membrane": {"young": 2e6}}, None),
