@@ -16,6 +16,8 @@ DIPS, THICKEST = (20, 80), 0.7
 _FARTHER = 1.3
 #: Highest powers of height and of squared radius in the symmetric part.
 _HEIGHT_POWER, _RADIUS_POWER = 5, 2
+#: Share of a function's square that others must leave for it to count as another one.
+_DEPENDENT = 1e-9
 #: Grains that the search begins with.
 _SCANNED = 1500
 #: Planes that the search begins with differ by this angle or more [degrees].
@@ -39,7 +41,7 @@ def _orthonormal(columns, root):
 	columns = np.array(columns).T * root[:, None]
 	columns /= np.linalg.norm(columns, axis=0)
 	values, vectors = np.linalg.eigh(columns.T @ columns)
-	kept = values > 1e-9 * values[-1]
+	kept = values > _DEPENDENT * values[-1]
 	return columns @ (vectors[:, kept] / np.sqrt(values[kept]))
 
 
@@ -62,37 +64,72 @@ def rampProfile(x, plane):
 	return np.clip((x @ normal(*plane[:2]) - plane[2]) * math.exp(-plane[3]), -0.5, 0.5)
 
 
-class Field:
-	"""Displacements and strains less what the symmetric and affine parts and given planes explain; what one plane more explains of the rest."""
+def _beside(basis, columns):
+	"""Orthonormal columns of what the functions ``columns``, (N,) each, add to the orthonormal ``basis``."""
+	own = np.zeros((basis.shape[0], 0))
+	for column in columns:
+		left = column / np.linalg.norm(column)
+		for _ in range(2):  # the second time takes what rounding has left of the first
+			left = left - basis @ (basis.T @ left) - own @ (own.T @ left)
+		size = left @ left
+		if size > _DEPENDENT:
+			own = np.column_stack([own, left / math.sqrt(size)])
+	return own
 
-	def __init__(self, data, planes=()):
-		x, u, weights, strain = data
+
+def _less(values, basis):
+	return values - basis @ (basis.T @ values)
+
+
+def _rows(root, *columns):
+	return np.ascontiguousarray(np.column_stack(columns).T) * root
+
+
+class Base:
+	"""What the symmetric and affine parts explain of displacements and strains: the same for all planes, and most of the work."""
+
+	def __init__(self, x, u, weights, strain):
 		self.x, self.weights, n, root = x, weights, len(x), np.sqrt(weights)
-		powers, none = _symmetricPowers(x), np.zeros(len(x))
-		jumps, slabs = [stepProfile(x, plane) for plane in planes], [slabProfile(x, plane) for plane in planes]
+		self.root, powers, none = root, _symmetricPowers(x), np.zeros(len(x))
 		a = x[:, :2] / np.abs(x[:, :2]).max()
-		either = [np.ones(n), a[:, 0], a[:, 1], x[:, 2] / np.abs(x[:, 2]).max(), *jumps]
+		either = [np.ones(n), a[:, 0], a[:, 1], x[:, 2] / np.abs(x[:, 2]).max()]
 		sideways = [np.concatenate([a[:, 0] * p, a[:, 1] * p]) for p in powers]
 		sideways += [np.concatenate(pair) for f in either for pair in ((f, none), (none, f))]
-		up = _orthonormal([*powers, a[:, 0], a[:, 1], *jumps], root)
-		side = _orthonormal(sideways, np.tile(root, 2))
-		still = _orthonormal([*powers, *slabs], root)
-		uz, us, e = root * u[:, 2], np.concatenate([root * u[:, 0], root * u[:, 1]]), root * strain
-		uz, us, rest = uz - up @ (up.T @ uz), us - side @ (side.T @ us), e - still @ (still.T @ e)
+		self.up = _orthonormal([*powers, a[:, 0], a[:, 1]], root)
+		self.side = _orthonormal(sideways, np.tile(root, 2))
+		self.still = _orthonormal(powers, root)
+		self.uz, self.us, self.e = root * u[:, 2], np.concatenate([root * u[:, 0], root * u[:, 1]]), root * strain
+		self.strain = self.still @ (self.still.T @ self.e)
+		self.uz, self.us, self.e = _less(self.uz, self.up), _less(self.us, self.side), self.e - self.strain
+		#: Rows that a profile is multiplied with: of the displacements up, along x and along y; of the strains.
+		self.steps, self.slabs = _rows(root, self.up, self.side[:n], self.side[n:]), _rows(root, self.still)
+
+
+class Field:
+	"""Displacements and strains less what a :class:`Base` and given planes explain; what one plane more explains of the rest."""
+
+	def __init__(self, base, planes=()):
+		self._base, self.x, self.weights, n, root, none = base, base.x, base.weights, len(base.x), base.root, np.zeros(len(base.x))
+		jumps = [root * stepProfile(self.x, plane) for plane in planes]
+		up, still = _beside(base.up, jumps), _beside(base.still, [root * slabProfile(self.x, plane) for plane in planes])
+		side = _beside(base.side, [np.concatenate(pair) for jump in jumps for pair in ((jump, none), (none, jump))])
+		uz, us, rest = _less(base.uz, up), _less(base.us, side), _less(base.e, still)
 		#: Weighted squares that are left, of displacements and of strains.
 		self.left = np.array([uz @ uz + us @ us, rest @ rest])
 		#: Part of the strain that is explained, (N,); 0 where the weight is.
-		self.explainedStrain = np.divide(still @ (still.T @ e), root, out=np.zeros(n), where=root > 0)
-		self._sizes = np.cumsum([up.shape[1], side.shape[1], side.shape[1]])
-		self._steps = np.ascontiguousarray(np.column_stack([up, side[:n], side[n:], uz, us[:n], us[n:]]).T) * root
-		self._slabs = np.ascontiguousarray(np.column_stack([still, rest]).T) * root
+		self.explainedStrain = np.divide(base.strain + base.e - rest, root, out=np.zeros(n), where=root > 0)
+		self._sizes = np.cumsum([base.up.shape[1], base.side.shape[1]]).tolist()
+		self._ownSizes = np.cumsum([up.shape[1], side.shape[1], side.shape[1]]).tolist()
+		self._steps, self._slabs = _rows(root, up, side[:n], side[n:], uz, us[:n], us[n:]), _rows(root, still, rest)
 
 	def jump(self, step):
 		"""The jump (3,) [m] that fits best with the profile ``step`` (N,), and the weighted squares that it takes of those left."""
-		found = self._steps @ step
-		z, x, y, (bz, bx, by) = np.split(found, self._sizes)
+		base, own = self._base.steps @ step, self._steps @ step
+		(a, b), (i, j, k) = self._sizes, self._ownSizes
+		x, y, ownX, ownY, (bz, bx, by) = base[a:b], base[b:], own[i:j], own[j:k], own[k:]
 		whole = self.weights @ step**2
-		zz, xx, yy, xy = whole - z @ z, whole - x @ x, whole - y @ y, -x @ y
+		zz = whole - base[:a] @ base[:a] - own[:i] @ own[:i]
+		xx, yy, xy = whole - x @ x - ownX @ ownX, whole - y @ y - ownY @ ownY, -x @ y - ownX @ ownY
 		det = xx * yy - xy**2
 		jump = np.array([(yy * bx - xy * by) / det, (xx * by - xy * bx) / det, bz / zz]) if zz > 0 and det > 0 else np.zeros(3)
 		return jump, jump @ (bx, by, bz)
@@ -100,8 +137,8 @@ class Field:
 	def excess(self, plane):
 		"""The strain in the slab's middle above that beside it that fits best, 0 at least, and the weighted squares that it takes of those left."""
 		slab = slabProfile(self.x, plane)
-		*s, b = self._slabs @ slab
-		ss = self.weights @ slab**2 - np.dot(s, s)
+		s, (*own, b) = self._base.slabs @ slab, self._slabs @ slab
+		ss = self.weights @ slab**2 - s @ s - np.dot(own, own)
 		strain = max(0.0, b / ss) if ss > 0 else 0.0
 		return strain, strain * b
 
@@ -119,7 +156,7 @@ class Search:
 	"""
 
 	def __init__(self, x, u, weights, strain, diameter):
-		self.x, self.u, self.weights, self.strain, self._fields = x, u, weights, strain, {}
+		self.x, self.u, self.weights, self.strain, self._fields, self._base = x, u, weights, strain, {}, None
 		wide = 2 * float(np.sqrt((x[:, :2] ** 2).sum(axis=1).max()))
 		#: Largest thickness of a band [m].
 		self.thickest = max(THICKEST * wide, 2 * diameter)
@@ -133,7 +170,7 @@ class Search:
 
 	def _of(self, x, u, weights, strain):
 		made = Search.__new__(Search)
-		made.__dict__.update(self.__dict__, x=x, u=u, weights=weights, strain=strain, _fields={})
+		made.__dict__.update(self.__dict__, x=x, u=u, weights=weights, strain=strain, _fields={}, _base=None)
 		return made
 
 	def field(self, planes=()):
@@ -142,7 +179,8 @@ class Search:
 		if name not in self._fields:
 			if len(self._fields) > 1:
 				self._fields.pop(next(reversed(self._fields)))  # the first one, mostly without planes, is asked for again and again
-			self._fields[name] = Field((self.x, self.u, self.weights, self.strain), planes)
+			self._base = self._base or Base(self.x, self.u, self.weights, self.strain)
+			self._fields[name] = Field(self._base, planes)
 		return self._fields[name]
 
 	def isFree(self, plane, slab):
