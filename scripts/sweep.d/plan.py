@@ -51,7 +51,7 @@ def _costs(config, radii):
 	spheres = needs.grains + needs.membrane
 	one, kept = estimate.stepTime(config.tier, needs.grains, needs.membrane), spheres * (estimate.STATE + 2 * estimate.CHECKPOINT)
 	rows = needs.consolidation / config.output.consolidationSteps, sum(stage.records for stage in lists.plan(config))
-	row = _ROW_TIME + _CHECKPOINT_TIME / config.output.checkpointEvery
+	row = _ROW_TIME + (_CHECKPOINT_TIME / config.output.checkpointEvery if config.output.checkpointEvery else 0)
 	each = {
 		SPECIMEN: (_START + _PACKING_TIME * len(radii), _PACKING * len(radii), 0.0),
 		CONSOLIDATION: (_START + one * needs.consolidation + row * rows[0], kept + estimate.ROW * rows[0], one * needs.consolidation),

@@ -131,6 +131,11 @@ def test_setsShareWhatTheyHaveInCommon(tmp_path):
 	assert plan["runs"][2]["stages"] == plan["runs"][4]["stages"] and len(plan["jobs"]) == 2 + 2 + 4
 
 
+def test_aTestWithoutCheckpointsHasItsTimeToo(tmp_path):
+	plan, _ = plans.make(studyfile.load(write(tmp_path, changes={"output": {"checkpointEvery": 0}})))
+	assert all(found["seconds"] > 0 for found in plan["jobs"].values())
+
+
 def test_accuracyIsSettledBeforeAnythingIsNamed(tmp_path):
 	changes = {"accuracy": 0.5, "specimen": {"grains": 2000, "emod": 4e7}}
 	(tmp_path / "sand.csv").write_text(GRADATION)
