@@ -22,18 +22,14 @@ def _short(key, value):
 
 
 def drawAll(plan, rows, folder):
-	"""Draw study.png, or study-SET.png for each set of a study of sets; the paths."""
+	"""Draw study.png, or study-SET.png for each set of a study of sets."""
 	if plan["axes"][:1] != [SET]:
-		paths = {folder / "study.png": (plan, rows)}
-	else:
-		paths = {}
-		for name in dict.fromkeys(run["values"][SET] for run in plan["runs"]):
-			own = [row for row in rows if row[0]["values"][SET] == name]
-			axes = [key for key in plan["axes"][1:] if own[0][0]["values"][key] != NOT_VARIED]
-			paths[folder / f"study-{name.replace(' ', '-')}.png"] = {**plan, "axes": axes, "title": f"{plan['title']}: {name}"}, own
-	for path, (part, own) in paths.items():
-		draw(part, own, path)
-	return list(paths)
+		draw(plan, rows, folder / "study.png")
+		return
+	for name in dict.fromkeys(run["values"][SET] for run in plan["runs"]):
+		own = [row for row in rows if row[0]["values"][SET] == name]
+		axes = [key for key in plan["axes"][1:] if own[0][0]["values"][key] != NOT_VARIED]
+		draw({**plan, "axes": axes, "title": f"{plan['title']}: {name}"}, own, folder / f"study-{name.replace(' ', '-')}.png")
 
 
 def draw(plan, rows, path):

@@ -19,14 +19,20 @@ ROOT = pathlib.Path(__file__).parents[2]
 TESTS = ("flexible-150", "rigid-150")
 
 
-def study(script, *arguments):
-	"""Lines that a study prints in its short form, in this YADE."""
-	import yade
-
+def loaded(script):
+	"""A script as a module."""
 	path = ROOT / script
 	spec = importlib.util.spec_from_file_location(path.stem, path)
 	module = importlib.util.module_from_spec(spec)
 	spec.loader.exec_module(module)
+	return module
+
+
+def study(script, *arguments):
+	"""Lines that a study prints in its short form, in this YADE."""
+	import yade
+
+	module = loaded(script)
 	yade.O.reset()
 	printed = io.StringIO()
 	with contextlib.redirect_stdout(printed):
@@ -108,28 +114,20 @@ def test_packingStudy():
 	assert len(reached) == 3 and "fix: " in reached[1] and "coordination" in reached[2]
 
 
-INSIDE = {
-	"specimen": {"grains": 300, "porosity": 0.44},
-	"membrane": {"particleRadius": 2.5e-3, "thickness": 1.0e-3},  # as much thicker as the grains are larger
-	"shear": {"strain": 0.02, "velocity": 0.08},
-	"consolidation": {"unbalanced": 5e-3, "tolerance": 0.1},
-	"output": {"records": 10, "vtkEvery": 0, "checkpointEvery": 0},
-	"measure": {"bands": True, "replicates": 3, "strains": [0, 0.01, 0.02], "spacing": 0.012, "radius": 0.01, "slices": 6},
-}
+MEASURE = {"bands": True, "replicates": 3, "strains": [0, 0.01, 0.02], "spacing": 0.012, "radius": 0.01, "slices": 6}
 
 
 def test_insideTheStudysTests(O, tmp_path, capsys):
 	"""From a study's table of runs, of which one is not done, to the tables and pictures."""
+	short = {**loaded("examples/paper/paper_figure.py").SHORT, "shear": {"strain": 0.02, "velocity": 0.08}, "measure": MEASURE}
 	rows = ["run,set,boundary,consolidation.pressure,seed,status,folder", "0003,boundary,wall,150000.0,2,missing: shear has not ended,third", "0004,size,-,150000.0,1,done,no"]
 	for number, kind in enumerate(("membrane", "wall"), 1):
 		O.reset()
 		config = configuration.load(ROOT / "examples" / "paper" / "flexible-150.yaml")
-		run(configuration.derived(config, {"boundary": kind, **INSIDE}), tmp_path / kind, quiet=True)
+		run(configuration.derived(config, {"boundary": kind, **short}), tmp_path / kind, quiet=True)
 		rows.append(f"{number:04d},boundary,{kind},150000.0,1,done,{kind}")
 	(tmp_path / "runs.csv").write_text("\n".join(rows) + "\n")
-	spec = importlib.util.spec_from_file_location("inside", ROOT / "examples" / "paper" / "study" / "inside.py")
-	inside = importlib.util.module_from_spec(spec)
-	spec.loader.exec_module(inside)
+	inside = loaded("examples/paper/study/inside.py")
 	out = tmp_path / "out"
 	inside.main([str(tmp_path), str(out)])
 	printed = [[cell.strip() for cell in line.strip("|").split("|")] for line in capsys.readouterr().out.splitlines() if line.startswith("|")]
