@@ -5,7 +5,7 @@
 		attribute vec3 end;
 		attribute float radius;
 		attribute vec3 tint;
-		uniform vec4 cut;
+		uniform vec4 cuts[2];
 		varying vec3 shade;
 		varying float across;
 		void main() {
@@ -13,7 +13,8 @@
 			vec3 at = mix(a, b, position.x), side = cross(b - a, at);
 			float size = length(side);
 			gl_Position = projectionMatrix * vec4(at + (size > 0.0 ? position.y * radius / size : 0.0) * side, 1.0);
-			if (dot(0.5 * (start + end), cut.xyz) > cut.w) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+			for (int k = 0; k < 2; ++k)
+				if (dot(0.5 * (start + end), cuts[k].xyz) > cuts[k].w) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 			shade = tint;
 			across = position.y;
 		}`;
@@ -47,7 +48,7 @@
 				vertexShader: VERTEX,
 				fragmentShader: FRAGMENT,
 				side: THREE.DoubleSide,
-				uniforms: { cut: { value: new THREE.Vector4(0, 0, 0, 1) } },
+				uniforms: { cuts: { value: [new THREE.Vector4(), new THREE.Vector4()] } },
 			});
 			this.object = new THREE.Mesh(geometry, this.material);
 			this.object.frustumCulled = false;
@@ -79,6 +80,11 @@
 			geometry.maxInstancedCount = Math.min(force.length, Math.round((share / 100) * one.all));
 			const carried = force.subarray(0, geometry.maxInstancedCount).reduce((sum, each) => sum + each, 0) / one.all;
 			return `The ${geometry.maxInstancedCount} strongest of ${one.all} contacts carry ${report.number(100 * carried, 3)} % of the normal forces, whose mean is ${report.number(one.mean, 3)} N.`;
+		}
+
+		// Leave out contacts whose middle is beyond one of two planes, {normal, far}, at most.
+		cut(planes) {
+			this.material.uniforms.cuts.value.forEach((one, k) => (planes[k] ? one.set(...planes[k].normal.toArray(), planes[k].far) : one.set(0, 0, 0, 1)));
 		}
 
 		csv() {

@@ -29,8 +29,8 @@
 			this.cells = new Uint8Array(0);
 		}
 
-		// Distances from the reader, order by them. within: of those before a plane alone; returns how many are before the reader.
-		sort(position, view, { normal, far }) {
+		// Distances from the reader, and the order by them of those that are before him and beyond no plane; returns their number.
+		sort(position, view, planes) {
 			const { depth, bins, order } = this,
 				starts = new Uint32Array(BINS + 2);
 			let low = Infinity,
@@ -39,7 +39,8 @@
 				const x = position[3 * k],
 					y = position[3 * k + 1],
 					z = position[3 * k + 2];
-				const d = normal.x * x + normal.y * y + normal.z * z > far ? -1 : -(view[2] * x + view[6] * y + view[10] * z + view[14]);
+				let d = -(view[2] * x + view[6] * y + view[10] * z + view[14]);
+				for (const { normal, far } of planes) if (normal.x * x + normal.y * y + normal.z * z > far) d = -1;
 				depth[k] = d;
 				if (d <= 0) continue;
 				if (d < low) low = d;
@@ -57,9 +58,9 @@
 		}
 
 		// Writes the numbers of those that are seen to index, returns how many. wide, high: of the picture in cells; focal: as in it.
-		fill(index, position, radius, view, plane, wide, high, focal) {
+		fill(index, position, radius, view, planes, wide, high, focal) {
 			const { depth, order } = this,
-				count = this.sort(position, view, plane);
+				count = this.sort(position, view, planes);
 			if (this.cells.length !== wide * high) this.cells = new Uint8Array(wide * high);
 			else this.cells.fill(0);
 			let kept = 0;
@@ -127,11 +128,11 @@
 				position.needsUpdate = radius.needsUpdate = tint.needsUpdate = true;
 			},
 			// camera: its matrices are those of the picture. wide, high: of the picture [pixels of the page]; ratio: pixels drawn of one of these.
-			// plane: {normal, far}, spheres beyond it are left out.
-			see(camera, plane, wide, high, ratio) {
+			// planes: {normal, far} each, spheres beyond one are left out.
+			see(camera, planes, wide, high, ratio) {
 				const focal = (camera.projectionMatrix.elements[5] * high) / 2;
 				material.uniforms.scale.value = ratio * focal;
-				const kept = seen.fill(index.array, position.array, radius.array, camera.matrixWorldInverse.elements, plane, wide, high, focal);
+				const kept = seen.fill(index.array, position.array, radius.array, camera.matrixWorldInverse.elements, planes, wide, high, focal);
 				geometry.setDrawRange(0, kept);
 				index.updateRange.count = kept;
 				index.needsUpdate = true;

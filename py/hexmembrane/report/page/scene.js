@@ -2,12 +2,12 @@
 {
 	const MM = 1000,
 		FIELD = 30,
-		SLOW = 40,
+		SLOW = 36,
 		LEAST = 0.35,
 		TURN = 0.09,
 		CHAINS = "plasma";
 	const { element } = report;
-	const WANTED = { grains: "", boundary: "", sheet: "back", cut: false, depth: 0, azimuth: 0, bands: true, chains: false, share: 20 };
+	const WANTED = { grains: "", boundary: "", sheet: "back", cut: false, depth: 0, azimuth: 0, top: false, level: 50, bands: true, chains: false, share: 20 };
 
 	class Scene {
 		// before: what view() gave.
@@ -163,10 +163,13 @@
 			this.spheres.changed();
 			const angle = (options.azimuth * Math.PI) / 180,
 				normal = new THREE.Vector3(Math.cos(angle), Math.sin(angle), 0);
-			this.cut = { normal, far: options.cut ? normal.dot(this.centre) + (options.depth / 100) * (this.size.x / 2) : 1e9 };
+			this.cuts = [
+				...(options.cut ? [{ normal, far: normal.dot(this.centre) + (options.depth / 100) * (this.size.x / 2) }] : []),
+				...(options.top ? [{ normal: this.camera.up, far: this.centre.z + (options.level / 100 - 0.5) * this.size.z }] : []),
+			];
 			if (this.chains) {
 				this.chains.object.visible = options.chains;
-				this.chains.material.uniforms.cut.value.set(normal.x, normal.y, 0, this.cut.far);
+				this.chains.cut(this.cuts);
 			}
 			if (this.sheet) {
 				this.place(this.sheet.position.array, this.sheetPositions[frame]);
@@ -285,12 +288,12 @@
 
 		render() {
 			const { clientWidth, clientHeight } = this.stage;
-			if (!this.cut || !clientWidth || !clientHeight) return;
+			if (!this.cuts || !clientWidth || !clientHeight) return;
 			const direction = this.camera.getWorldDirection(new THREE.Vector3());
 			this.camera.updateMatrixWorld();
-			if (this.spheres.object.visible) this.spheres.see(this.camera, this.cut, clientWidth, clientHeight, this.renderer.getPixelRatio());
+			if (this.spheres.object.visible) this.spheres.see(this.camera, this.cuts, clientWidth, clientHeight, this.renderer.getPixelRatio());
 			if (this.sheet?.object.visible) {
-				const planes = this.options.cut ? [this.cut] : [],
+				const planes = [...this.cuts],
 					away = new THREE.Vector3(-direction.x, -direction.y, 0);
 				if (this.options.sheet === "back" && away.lengthSq() > 1e-6) planes.push({ normal: away, far: away.dot(this.centre) });
 				this.sheet.see(planes);

@@ -8,7 +8,7 @@
 			gl_Position = projectionMatrix * seen;
 			vec3 face = normalize(normalMatrix * normal);
 			if (dot(face, seen.xyz) > 0.0) face = -face;
-			shade = tint * (0.45 + 0.55 * max(0.0, dot(face, vec3(-0.37, 0.55, 0.75))));
+			shade = tint * (0.6 + 0.4 * max(0.0, dot(face, vec3(-0.37, 0.55, 0.75))));
 		}`;
 	const FRAGMENT = `
 		uniform float opacity;
