@@ -38,7 +38,7 @@ OWN = {"consolidation.pressure": "100000.0", "membrane.particleRadius": "0.00075
 #: Comparison -> (sets, what names a case, what a case and its reference share, values of the reference, its set).
 COMPARISONS = {
 	"boundary": (("boundary",), ("boundary",), ("consolidation.pressure",), {"boundary": "membrane"}, "boundary"),
-	"size": (("size",), ("membrane.particleRadius",), ("consolidation.pressure",), {"membrane.particleRadius": "0.00025"}, "size"),
+	"size": (("size",), ("membrane.particleRadius",), ("consolidation.pressure",), {"membrane.particleRadius": "0.0005"}, "size"),
 	"porosity": (("porosity",), ("boundary",), ("specimen.porosity",), {"boundary": "membrane"}, "porosity"),
 	"densest": (("densest",), ("boundary",), (), {"boundary": "membrane"}, "densest"),
 	"settings": (("centre", "cube", "open loop", "equal springs", "as the study"), ("set",), (), OWN, "size"),
