@@ -18,7 +18,7 @@ from hexmembrane.report.summary import halfWidth, quantities
 
 _SOURCES = pathlib.Path(__file__).with_name("page")
 #: The page's own scripts, in the order in which they are run.
-_SCRIPTS = ("data", "colours", "figure", "curves", "points", "chains", "tools", "scene", "sections", "text", "renew", "main")
+_SCRIPTS = ("data", "colours", "figure", "curves", "points", "sheet", "chains", "tools", "scene", "sections", "text", "renew", "main")
 
 
 def _scatter(group):

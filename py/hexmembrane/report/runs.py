@@ -18,10 +18,17 @@ from hexmembrane.output import records, tables
 _STUDY, _STAGES, _TEST = "plan.json", "stages", "test"
 #: The strain of a test that has ended is its last row's, to this share.
 _ENDED = 1e-3
+#: Strains below this are told as 0.
+_SETTLING = 1e-6
 
 
 class ReportError(ValueError):
 	"""There is nothing that a report could be made of."""
+
+
+def _told(strain):
+	"""A strain as it is told: the settling before the first row is 0."""
+	return 0.0 if abs(strain) < _SETTLING else strain
 
 
 @dataclasses.dataclass
@@ -87,14 +94,14 @@ class Run:
 		shear, wanted = self.rows("shear"), self.key("shear", "strain")
 		if not shear:
 			return "consolidation, no shear yet" if self.rows("consolidation") else "no rows yet"
-		strain = shear["axial_strain"][-1]
+		strain = _told(shear["axial_strain"][-1])
 		ended = isinstance(wanted, (int, float)) and strain >= (1 - _ENDED) * wanted
 		return f"sheared to {100 * strain:.4g} %" + ("" if ended or wanted is None else f" of {100 * wanted:.4g} %: not at its end")
 
 	def _stateOfStages(self):
 		if not self.table:
 			return "no rows yet"
-		now, strain = str(self.table["stage"][-1]), self.table["axial_strain"][-1]
+		now, strain = str(self.table["stage"][-1]), _told(self.table["axial_strain"][-1])
 		try:
 			planned = plan(build(Config, self.config))
 			labels = [stage.label for stage in planned]

@@ -1,21 +1,23 @@
 // Force chains: contacts as tubes, drawn as flat strips that face the reader and are shaded like cylinders.
 {
 	const VERTEX = `
+		attribute vec2 corner;
 		attribute vec3 start;
 		attribute vec3 end;
 		attribute float radius;
 		attribute vec3 tint;
-		uniform vec4 cut;
+		uniform vec4 cuts[2];
 		varying vec3 shade;
 		varying float across;
 		void main() {
 			vec3 a = (modelViewMatrix * vec4(start, 1.0)).xyz, b = (modelViewMatrix * vec4(end, 1.0)).xyz;
-			vec3 at = mix(a, b, position.x), side = cross(b - a, at);
+			vec3 at = mix(a, b, corner.x), side = cross(b - a, at);
 			float size = length(side);
-			gl_Position = projectionMatrix * vec4(at + (size > 0.0 ? position.y * radius / size : 0.0) * side, 1.0);
-			if (dot(0.5 * (start + end), cut.xyz) > cut.w) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+			gl_Position = projectionMatrix * vec4(at + (size > 0.0 ? corner.y * radius / size : 0.0) * side, 1.0);
+			for (int k = 0; k < 2; ++k)
+				if (dot(0.5 * (start + end), cuts[k].xyz) > cuts[k].w) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 			shade = tint;
-			across = position.y;
+			across = corner.y;
 		}`;
 	const FRAGMENT = `
 		varying vec3 shade;
@@ -26,28 +28,39 @@
 	// A contact with the mean force has a tube of this share of the mean grain's radius; from this many times the mean on all are the same.
 	const THICK = 0.1,
 		MOST = 6;
-	const MM = 1000;
+	const MM = 1000,
+		CORNERS = 4;
 
 	class Chains {
 		// frames: as hexmembrane/report/chains.py writes them; radius: of the mean grain [m].
 		constructor(frames, radius) {
 			Object.assign(this, { frames, thick: MM * THICK * radius, range: [0, MOST] });
 			const most = Math.max(...frames.map((one) => one.ends.shape[1])),
-				geometry = (this.geometry = new THREE.InstancedBufferGeometry());
-			geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0]), 3));
-			geometry.setIndex([0, 1, 2, 0, 2, 3]);
+				geometry = (this.geometry = new THREE.BufferGeometry());
+			// four corners a contact, not instances: a processor draws each instance as a picture of its own
+			const corners = new Float32Array(2 * CORNERS * most),
+				index = new Uint32Array(6 * most);
+			for (let k = 0; k < most; ++k) {
+				corners.set([0, -1, 1, -1, 1, 1, 0, 1], 2 * CORNERS * k);
+				index.set(
+					[0, 1, 2, 0, 2, 3].map((one) => CORNERS * k + one),
+					6 * k,
+				);
+			}
+			geometry.setAttribute("corner", new THREE.BufferAttribute(corners, 2));
+			geometry.setIndex(new THREE.BufferAttribute(index, 1));
 			for (const [name, size] of [
 				["start", 3],
 				["end", 3],
 				["radius", 1],
 				["tint", 3],
 			])
-				geometry.setAttribute(name, new THREE.InstancedBufferAttribute(new Float32Array(size * most), size));
+				geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(CORNERS * size * most), size));
 			this.material = new THREE.ShaderMaterial({
 				vertexShader: VERTEX,
 				fragmentShader: FRAGMENT,
 				side: THREE.DoubleSide,
-				uniforms: { cut: { value: new THREE.Vector4(0, 0, 0, 1) } },
+				uniforms: { cuts: { value: [new THREE.Vector4(), new THREE.Vector4()] } },
 			});
 			this.object = new THREE.Mesh(geometry, this.material);
 			this.object.frustumCulled = false;
@@ -62,23 +75,28 @@
 			if (this.frame !== frame) {
 				const { start, end, radius, tint } = geometry.attributes,
 					colour = report.scale(map, this.range);
-				for (let k = 0; k < force.length; ++k) {
+				for (let at = 0; at < CORNERS * force.length; ++at) {
+					const k = Math.floor(at / CORNERS),
+						shade = colour(force[k]);
 					for (let i = 0; i < 3; ++i) {
-						start.array[3 * k + i] = MM * ends[6 * k + i];
-						end.array[3 * k + i] = MM * ends[6 * k + 3 + i];
+						start.array[3 * at + i] = MM * ends[6 * k + i];
+						end.array[3 * at + i] = MM * ends[6 * k + 3 + i];
+						tint.array[3 * at + i] = shade[i] / 255;
 					}
-					radius.array[k] = thick * Math.min(MOST, force[k]);
-					tint.array.set(
-						colour(force[k]).map((part) => part / 255),
-						3 * k,
-					);
+					radius.array[at] = thick * Math.min(MOST, force[k]);
 				}
 				start.needsUpdate = end.needsUpdate = radius.needsUpdate = tint.needsUpdate = true;
 				Object.assign(this, { frame, ends, force });
 			}
-			geometry.maxInstancedCount = Math.min(force.length, Math.round((share / 100) * one.all));
-			const carried = force.subarray(0, geometry.maxInstancedCount).reduce((sum, each) => sum + each, 0) / one.all;
-			return `The ${geometry.maxInstancedCount} strongest of ${one.all} contacts carry ${report.number(100 * carried, 3)} % of the normal forces, whose mean is ${report.number(one.mean, 3)} N.`;
+			this.count = Math.min(force.length, Math.round((share / 100) * one.all));
+			geometry.setDrawRange(0, 6 * this.count);
+			const carried = force.subarray(0, this.count).reduce((sum, each) => sum + each, 0) / one.all;
+			return `The ${this.count} strongest of ${one.all} contacts carry ${report.number(100 * carried, 3)} % of the normal forces, whose mean is ${report.number(one.mean, 3)} N.`;
+		}
+
+		// Leave out contacts whose middle is beyond one of two planes, {normal, far}, at most.
+		cut(planes) {
+			this.material.uniforms.cuts.value.forEach((one, k) => (planes[k] ? one.set(...planes[k].normal.toArray(), planes[k].far) : one.set(0, 0, 0, 1)));
 		}
 
 		csv() {
@@ -86,7 +104,7 @@
 				{ mean } = this.frames[this.frame];
 			return report.csv(
 				header,
-				Array.from({ length: this.geometry.maxInstancedCount }, (_, k) => [...this.ends.subarray(6 * k, 6 * k + 6), mean * this.force[k]]),
+				Array.from({ length: this.count }, (_, k) => [...this.ends.subarray(6 * k, 6 * k + 6), mean * this.force[k]]),
 			);
 		}
 

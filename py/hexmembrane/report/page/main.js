@@ -35,11 +35,12 @@
 		addEventListener("afterprint", () => setTheme(before));
 	}
 
-	async function show(index) {
+	// The strain stays in the address once the reader has chosen it; until then a page that renews itself goes on with the test.
+	async function show(index, chosen) {
 		find("strain").value = index;
 		const strain = state.strains[index];
 		find("at").textContent = report.told(state.run, strain);
-		keep("strain", strain);
+		if (chosen) keep("strain", strain);
 		report.curves.mark(report.marks(state.run, strain));
 		await Promise.all(state.parts.map((part) => part.show(strain)));
 	}
@@ -69,7 +70,7 @@
 		find("slide").hidden = find("play").hidden = state.strains.length < 2;
 		if (!state.strains.length) return;
 		find("strain").max = state.strains.length - 1;
-		const wanted = kept.has("strain") && !content.watch ? Number(kept.get("strain")) : state.strains[state.strains.length - 1];
+		const wanted = kept.has("strain") ? Number(kept.get("strain")) : state.strains[state.strains.length - 1];
 		await show(report.nearest(state.strains, wanted));
 	}
 
@@ -81,7 +82,7 @@
 			const on = button.getAttribute("aria-pressed") !== "true";
 			button.setAttribute("aria-pressed", on);
 			button.textContent = on ? "stop" : "play";
-			if (on) timer = setInterval(() => show((Number(find("strain").value) + 1) % state.strains.length), PAUSE);
+			if (on) timer = setInterval(() => show((Number(find("strain").value) + 1) % state.strains.length, true), PAUSE);
 		});
 	}
 
@@ -103,7 +104,7 @@
 		...content.runs.map((run, k) => element("option", { value: k }, run.title === run.name ? run.name : `${run.name}: ${run.title}`)),
 	);
 	find("run").addEventListener("change", (event) => pick(content.runs[event.target.value]));
-	find("strain").addEventListener("input", (event) => show(Number(event.target.value)));
+	find("strain").addEventListener("input", (event) => show(Number(event.target.value), true));
 	play();
 	const first = Math.max(
 		0,

@@ -9,7 +9,7 @@
 		try {
 			const kept = JSON.parse(sessionStorage.getItem(NAME));
 			sessionStorage.removeItem(NAME);
-			return report.content.watch && kept?.address === location.pathname ? kept : null;
+			return kept?.address === location.pathname ? kept : null;
 		} catch (error) {
 			return null;
 		}

@@ -2,12 +2,12 @@
 {
 	const MM = 1000,
 		FIELD = 30,
-		SLOW = 40,
+		SLOW = 36,
 		LEAST = 0.35,
 		TURN = 0.09,
 		CHAINS = "plasma";
 	const { element } = report;
-	const WANTED = { grains: "", boundary: "", sheet: "back", cut: false, depth: 0, azimuth: 0, bands: true, chains: false, share: 20 };
+	const WANTED = { grains: "", boundary: "", sheet: "back", cut: false, depth: 0, azimuth: 0, top: false, level: 50, bands: true, chains: false, share: 20 };
 
 	class Scene {
 		// before: what view() gave.
@@ -50,16 +50,10 @@
 				);
 				return;
 			}
-			this.renderer.localClippingEnabled = true;
 			this.stage.append(this.renderer.domElement);
 			this.scene = new THREE.Scene();
 			this.camera = new THREE.PerspectiveCamera(FIELD, 1, 1, 5000);
 			this.camera.up.set(0, 0, 1);
-			this.scene.add(new THREE.HemisphereLight(0xffffff, 0x777777, 0.9));
-			const lamp = new THREE.DirectionalLight(0xffffff, 0.45);
-			lamp.position.set(-0.4, 0.6, 0.8);
-			this.camera.add(lamp);
-			this.scene.add(this.camera);
 			this.controls = new THREE.OrbitControls(this.camera, this.stage);
 			this.controls.enableKeys = false;
 			this.controls.addEventListener("change", () => this.move());
@@ -77,14 +71,8 @@
 			this.scene.add(this.spheres.object);
 			if (data.boundary) {
 				this.sheetPositions = await report.array(data.boundary.position);
-				const geometry = new THREE.BufferGeometry(),
-					count = data.boundary.position.shape[1];
-				for (const name of ["position", "color"]) geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * count), 3));
-				geometry.setIndex(new THREE.BufferAttribute(await report.array(data.boundary.triangles), 1));
-				this.clip = new THREE.Plane(new THREE.Vector3(0, 1, 0), 0);
-				this.sheet = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ vertexColors: THREE.VertexColors, side: THREE.DoubleSide }));
-				this.sheet.frustumCulled = false;
-				this.scene.add(this.sheet);
+				this.sheet = new report.Sheet(data.boundary.position.shape[1], await report.array(data.boundary.triangles));
+				this.scene.add(this.sheet.object);
 			}
 			if (data.chains) {
 				this.chains = new report.Chains(data.chains, d3.mean(this.radii));
@@ -175,23 +163,20 @@
 			this.spheres.changed();
 			const angle = (options.azimuth * Math.PI) / 180,
 				normal = new THREE.Vector3(Math.cos(angle), Math.sin(angle), 0);
-			const far = options.cut ? normal.dot(this.centre) + (options.depth / 100) * (this.size.x / 2) : 1e9;
-			for (const one of [this.spheres, this.chains]) one?.material.uniforms.cut.value.set(normal.x, normal.y, 0, far);
-			if (this.chains) this.chains.object.visible = options.chains;
+			this.cuts = [
+				...(options.cut ? [{ normal, far: normal.dot(this.centre) + (options.depth / 100) * (this.size.x / 2) }] : []),
+				...(options.top ? [{ normal: this.camera.up, far: this.centre.z + (options.level / 100 - 0.5) * this.size.z }] : []),
+			];
+			if (this.chains) {
+				this.chains.object.visible = options.chains;
+				this.chains.cut(this.cuts);
+			}
 			if (this.sheet) {
-				const { geometry, material } = this.sheet;
-				this.place(geometry.attributes.position.array, this.sheetPositions[frame]);
-				this.paint(geometry.attributes.color.array, sheetValues, sheet);
-				geometry.attributes.position.needsUpdate = geometry.attributes.color.needsUpdate = true;
-				geometry.computeVertexNormals();
-				this.sheet.visible = options.sheet !== "none";
-				const glass = options.sheet === "glass";
-				Object.assign(material, { transparent: glass, opacity: glass ? 0.4 : 1, depthWrite: !glass });
-				material.clippingPlanes = [
-					...(options.sheet === "back" ? [this.clip] : []),
-					...(options.cut ? [new THREE.Plane(normal.clone().negate(), far)] : []),
-				];
-				material.needsUpdate = true;
+				this.place(this.sheet.position.array, this.sheetPositions[frame]);
+				this.paint(this.sheet.tint.array, sheetValues, sheet);
+				this.sheet.changed();
+				this.sheet.object.visible = options.sheet !== "none";
+				this.sheet.glass = options.sheet === "glass";
 			}
 			this.fillPlanes();
 			this.describe(grains, sheet);
@@ -302,38 +287,39 @@
 		}
 
 		render() {
-			if (!this.spheres || !this.stage.clientWidth) return;
+			const { clientWidth, clientHeight } = this.stage;
+			if (!this.cuts || !clientWidth || !clientHeight) return;
 			const direction = this.camera.getWorldDirection(new THREE.Vector3());
-			this.spheres.sort(direction);
-			const high = this.renderer.getDrawingBufferSize(new THREE.Vector2()).y;
-			this.spheres.material.uniforms.scale.value = high / (2 * Math.tan((FIELD * Math.PI) / 360));
-			if (this.clip) {
-				const away = new THREE.Vector3(direction.x, direction.y, 0);
-				if (away.lengthSq() > 1e-6) this.clip.setFromNormalAndCoplanarPoint(away.normalize(), this.centre);
+			this.camera.updateMatrixWorld();
+			if (this.spheres.object.visible) this.spheres.see(this.camera, this.cuts, clientWidth, clientHeight, this.renderer.getPixelRatio());
+			if (this.sheet?.object.visible) {
+				const planes = [...this.cuts],
+					away = new THREE.Vector3(-direction.x, -direction.y, 0);
+				if (this.options.sheet === "back" && away.lengthSq() > 1e-6) planes.push({ normal: away, far: away.dot(this.centre) });
+				this.sheet.see(planes);
 			}
 			this.renderer.render(this.scene, this.camera);
 		}
 
-		// Pictures a second while it is turned, over a number of them.
+		// Pictures a second while it is turned, over a number of them, as fine as setRatio() has it.
 		async measure(pictures) {
 			await this.ready;
+			const arm = new THREE.Vector3(),
+				axis = new THREE.Vector3(0, 0, 1),
+				gl = this.renderer.getContext(),
+				{ target } = this.controls;
 			return new Promise((resolve) => {
 				let left = pictures;
-				const start = performance.now(),
-					gl = this.renderer.getContext(),
-					pixel = new Uint8Array(4);
+				const start = performance.now();
 				const next = () => {
 					if (left-- === 0) {
+						gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits until all are drawn
 						resolve((1000 * pictures) / (performance.now() - start));
 						return;
 					}
-					this.camera.position
-						.sub(this.centre)
-						.applyAxisAngle(new THREE.Vector3(0, 0, 1), TURN)
-						.add(this.centre);
-					this.controls.update();
+					this.camera.position.copy(arm.copy(this.camera.position).sub(target).applyAxisAngle(axis, TURN).add(target));
+					this.camera.lookAt(target);
 					this.render();
-					gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); // waits until it is drawn
 					requestAnimationFrame(next);
 				};
 				next();
@@ -381,7 +367,7 @@
 			clearTimeout(this.rest);
 			this.spheres?.dispose();
 			this.chains?.dispose();
-			this.sheet?.geometry.dispose();
+			this.sheet?.dispose();
 			this.renderer?.dispose();
 			this.renderer?.forceContextLoss();
 		}

@@ -54,7 +54,8 @@
 				]),
 				select("coloured by ", "boundary", [...listed(data.boundary.quantities), ["none", "nothing"]]),
 			);
-		made.append(box("cut", "cut"), slider("at ", "depth", -100, 100), slider("turned ", "azimuth", 0, 360));
+		made.append(box("upright cut", "cut"), slider("at ", "depth", -100, 100), slider("turned ", "azimuth", 0, 360));
+		made.append(box("level cut", "top"), slider("at height [%] ", "level", 0, 100));
 		if (data.chains) made.append(box("force chains", "chains"), slider("strongest contacts [%] ", "share", 1, 50));
 		if (data.planes.length) made.append(box("planes of bands", "bands"));
 		for (const [name, direction] of [
