@@ -5,23 +5,22 @@
 # choosePackager: sets the array packager, the words before a command that makes packages. Needs chooseHost.
 # shellcheck disable=SC2034 # for scripts/package
 choosePackager() {
+	packager=(env)
 	if [[ $host == native ]]; then
-		if ! command -v dpkg-buildpackage || ! command -v dh; then
-			die "there is no dpkg-buildpackage or dh in PATH." "fix: apt-get install --no-install-recommends dpkg-dev debhelper"
-		fi >/dev/null
-		packager=(env)
+		[[ -n $(command -v dpkg-buildpackage) && -n $(command -v dh) ]] || die "there is no dpkg-buildpackage or dh in PATH." \
+			"fix: apt-get install --no-install-recommends dpkg-dev debhelper"
 	else
 		local folder
 		folder=$cache/packager-$(rootHash)
 		[[ -d $folder ]] || setUpPackager "$folder"
-		over "$folder"
+		layOver "$folder/tree/usr"
+		# No package is installed in the root: dpkg's own list is an empty one.
+		packager=("${over[@]}" --bind "$folder/dpkg" /var/lib/dpkg)
 	fi
 }
 
-# over FOLDER: sets packager. No package is installed in the root: dpkg's own list is an empty one.
-over() {
-	packager=(bwrap --bind / / --dev-bind /dev /dev --proc /proc --overlay-src /usr --overlay-src "$1/tree/usr" --ro-overlay /usr --bind "$1/dpkg" /var/lib/dpkg)
-}
+# layOver FOLDER: sets the array over, the words before a command that sees FOLDER laid over /usr and has no network, since YADE opens ports.
+layOver() { over=(bwrap --bind / / --dev-bind /dev /dev --proc /proc --unshare-net --overlay-src /usr --overlay-src "$1" --ro-overlay /usr); }
 
 # setUpPackager FOLDER: makes it.
 setUpPackager() {
