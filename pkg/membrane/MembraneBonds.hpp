@@ -77,7 +77,8 @@ private:
 		((Real,friction,0,,"Friction coefficient of broken bonds [-]."))
 		((bool,tensionOnly,false,,"Carry no compression: a thin latex sheet wrinkles instead. With ks = 0 only."))
 		((vector<Vector3r>,shearForces,,Attr::readonly,"Shear force [N] on the first particle of each bond (empty with ks = 0)."))
-		((vector<int>,broken,,Attr::readonly,"1 for each broken bond (empty while nothing can break)."))
+		((vector<int>,broken,,,"0, or 1 for a broken bond, in the order of HexMembrane.bonds (empty: none is, and nothing can break). "
+			"May be given before the first step, for a slit: a bond that is neither 0 nor 1 is a ValueError."))
 		,/*ctor*/,
 		.def("elasticEnergy",&MembraneBonds::elasticEnergy,"Elastic energy of all bonds [J] at the last step.")
 		.def("normalForces",&MembraneBonds::normalForces,"Normal force of each bond at the last step [N], tension positive, in the order of HexMembrane.bonds.")

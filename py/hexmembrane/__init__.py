@@ -6,6 +6,6 @@ Importing it makes the C++ classes (see :mod:`hexmembrane._load`) known to YADE:
 
 from hexmembrane import _load
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _load.load()

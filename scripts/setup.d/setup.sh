@@ -18,6 +18,8 @@ set -euo pipefail
 . "$setupDir/browser.sh"
 # shellcheck source=scripts/setup.d/slurm.sh
 . "$setupDir/slurm.sh"
+# shellcheck source=scripts/setup.d/packager.sh
+. "$setupDir/packager.sh"
 
 # Where YADE comes from: sets host (native or root), yadeSource and entry.
 chooseHost() {
@@ -57,19 +59,24 @@ chooseHost() {
 	entry+=(HEXMEMBRANE_BUILD="$buildDir")
 }
 
+# How many units are compiled at once: one takes up to 5.2 GB.
+buildJobs() {
+	local byMemory jobs
+	byMemory=$(awk '/^MemTotal:/ { print int($2 / 5.2e6) }' /proc/meminfo)
+	jobs=$(processors)
+	((byMemory >= jobs)) || jobs=$((byMemory > 0 ? byMemory : 1))
+	echo "$jobs"
+}
+
 # build FOLDER "TARGET..." OPTION...: builds the targets in FOLDER, configured with CMake's OPTIONs. ninja itself finds out what is out
 # of date.
 build() {
-	local folder=$1 jobs jobsByMemory targets
+	local folder=$1 targets
 	read -ra targets <<<"$2"
 	shift 2
 	lock 8 "build-$(printf '%s' "$folder" | sha256sum | cut -c 1-12)"
 	configure "$folder" "$@"
-	# A unit of the plugin takes up to 5.2 GB to compile.
-	jobsByMemory=$(awk '/^MemTotal:/ { print int($2 / 5.2e6) }' /proc/meminfo)
-	jobs=$(processors)
-	((jobsByMemory >= jobs)) || jobs=$((jobsByMemory > 0 ? jobsByMemory : 1))
-	"${entry[@]}" ninja -C "$folder" -j "$jobs" "${targets[@]}" | tellBuild "$folder" || die "the build failed (see above)."
+	"${entry[@]}" ninja -C "$folder" -j "$(buildJobs)" "${targets[@]}" | tellBuild "$folder" || die "the build failed (see above)."
 	exec 8>&-
 }
 

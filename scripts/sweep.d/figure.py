@@ -9,7 +9,7 @@ import collections
 import numpy
 from hexmembrane.report.summary import CONFIDENCE, halfWidth
 from results import endsOf, group
-from studyfile import NOT_VARIED, SET
+from studyfile import SET
 
 #: Strains at which curves are averaged; columns of panels at most, with more there is one; lines that a legend names at most.
 _POINTS, _MOST_COLUMNS, _MOST_NAMED = 201, 6, 10
@@ -28,7 +28,7 @@ def drawAll(plan, rows, folder):
 		return
 	for name in dict.fromkeys(run["values"][SET] for run in plan["runs"]):
 		own = [row for row in rows if row[0]["values"][SET] == name]
-		axes = [key for key in plan["axes"][1:] if own[0][0]["values"][key] != NOT_VARIED]
+		axes = list(plan["study"]["sets"][name].get("axes") or {})
 		draw({**plan, "axes": axes, "title": f"{plan['title']}: {name}"}, own, folder / f"study-{name.replace(' ', '-')}.png")
 
 

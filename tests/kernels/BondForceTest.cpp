@@ -91,6 +91,26 @@ TEST(BondForce, fastEqualsReferenceWithBreakage)
 	EXPECT_GT(broken, 0);
 }
 
+TEST(BondForce, slitOfUnbreakableBonds)
+{
+	Pair pair(law(346));
+	pair.fastState.broken.assign(pair.tube.bonds.size(), 0);
+	for (size_t b = 0; b < pair.tube.bonds.size(); b += 3) pair.fastState.broken[b] = 1;
+	pair.slowState.broken = pair.fastState.broken;
+	support::shake(pair.p.position, 2e-4, 3);
+	pair.step(1e-4);
+	EXPECT_LT(relativeDifference(pair.fast.force.vectors(), pair.p.force), 1e-12);
+	int pulled = 0;
+	for (size_t b = 0; b < pair.tube.bonds.size(); ++b) {
+		const double force = pair.fast.normalForce(pair.fastState.state(), static_cast<int>(b));
+		if (pair.fastState.broken[b])
+			EXPECT_LE(force, 0);
+		else
+			pulled += force > 0;
+	}
+	EXPECT_GT(pulled, 0);
+}
+
 TEST(BondForce, generatedMembraneIsFreeOfStress)
 {
 	Pair pair(law(1e5));

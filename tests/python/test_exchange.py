@@ -206,14 +206,47 @@ def test_goesOnFromTheVeryState(O, exported):
 	assert O.materials["grain"].friction == pytest.approx(0.4) and O.materials["wall-64"].kn == pytest.approx(1e6)
 
 
+def test_goesOnWithStiffnessByPair(O, tier, tmp_path):
+	"""Two groups of grains and a floor: what contacts have beyond the rules of series and minimum, as by PFC's contact cmat, is that of the pair again."""
+	for label, kn in (("soft", 1e5), ("stiff", 4e5), ("lone", 3e5)):
+		contactScene.springs(kn, kn / 2, friction=0.3, label=label)
+	contactScene.springs(2e5, 1e5, friction=0.2, label="floor")
+	soft, stiff = (O.materials[label] for label in ("soft", "stiff"))
+	soft.setPair("stiff", kn=3e6, ks=1e6, friction=0.6)
+	soft.setPair("floor", kn=2e6, ks=1e6, friction=0.7)
+	for place, label in enumerate(("soft", "soft", "stiff", "stiff")):
+		O.bodies.append(utils.sphere((0, 0, 1.99e-3 * place), 1e-3, material=label))
+	for x, label in ((4e-3, "stiff"), (8e-3, "soft")):
+		O.bodies.append(utils.sphere((x, 0, 0), 1e-3, material=label))
+	O.bodies.append(platen((0, 0, -0.999e-3), 0.1, 0.1, facing=1, material="floor"))
+	O.engines = tiers.engines(tier)
+	O.dt = 1e-7
+	tiers.run(2)
+	scenes.write(tmp_path)
+	O.reset()
+	state = tables.read(tmp_path)
+	bodies = continuation.resume(state, damping=0.1)
+	assert len(state.contacts) == 6 and O.materials["grain-soft"].pairFriction(O.materials["grain-stiff"]) == pytest.approx(0.6)
+	assert set(O.materials["grain-soft"].pairs()) == {"grain-stiff", "wall-6"} and O.materials["grain-stiff"].pairs() == {}
+	for row in range(6):
+		first = bodies[state.contacts["end1"][row]]
+		ball = state.contacts["kind"][row] == tables.BALL_BALL
+		(phys,) = [contact.phys for contact in O.interactions if first in (contact.id1, contact.id2) and (bodies[state.contacts["end2"][row]] in (contact.id1, contact.id2) if ball else max(contact.id1, contact.id2) > 5)]
+		assert (phys.kn, phys.ks, phys.tangensOfFrictionAngle) == pytest.approx([state.contacts[name][row] for name in ("kn", "ks", "fric")], rel=1e-9)
+	state.balls["group"][4] = "lone"
+	O.reset()
+	with pytest.raises(ConfigError, match="balls of the group 'lone' touch no other balls"):
+		continuation.resume(state)
+
+
 @pytest.mark.parametrize(
 	"table, column, values, message",
 	[
-		("contacts", "fric", [0.4, 0.3], "fric is from 0.[23] to 0.[34] in contacts of one kind.*fix: one material"),
+		("contacts", "fric", [0.3], "fric is from 0.3 to 0.4 in contacts of grain and grain; fix: contacts of two groups"),
 		("contacts", "model", ["hertz"], "has a contact model that is not here"),
 		("balls", "vx", [math.nan], "has balls without vx"),
 		("contacts", "kind", 500 * [tables.BALL_FACET], "has no contact of two balls"),
-		("contacts", "kn", [4e7], "kn.* is from|which no spring of a wall"),
+		("contacts", "kn", [4e7], r"kn/\(pi .* is from .* in contacts of grain and grain"),
 	],
 )
 def test_cannotGoOn(O, exported, table, column, values, message):

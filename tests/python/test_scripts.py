@@ -42,6 +42,7 @@ SAYS = {
 	"state": r"the same stress to the last bit: True\n.*critical time step \S+e-05 s",
 	"rows": r"(?:[3-9]\d) columns, q \S+ Pa",
 	"views": r"(?s)of two grains \d+\n.*spheres\.\d+\.vtu",
+	"view": r"tension of the membrane's bonds from \S+ to \d\S* N",
 	"batch": r"friction 0\.5: axial \S+ Pa",
 }
 

@@ -107,3 +107,19 @@ def test_aWeakSheetIsToldBeforeTheRun(built):
 	said = built("compact", bendingStiffness=0.0, **weak)[2]
 	assert "of E t (limit 0.25), and it has no bending stiffness" in said and "fix: leave membrane.bendingStiffness out" in said
 	assert "lets it sag by " in built("compact", bendingStiffness=1e-5, **weak)[2]
+
+
+def test_aSlitGivenAtTheStartCarriesNoTension(O, built):
+	scene, engines, _ = built("reference", bendingStiffness=0.0, facets=False)
+	scene.setPressure(1e4)
+	bonds = engines["MembraneBonds"]
+	count = len(bonds.membrane.bonds)
+	bonds.broken = [2] * count
+	with pytest.raises(ValueError, match="MembraneBonds.broken = 2: is neither whole nor broken; fix: 0 or 1 for each of HexMembrane.bonds"):
+		O.step()
+	bonds.broken = [k % 2 for k in range(count)]
+	for i in bonds.membrane.ids:  # all bonds stretched
+		O.bodies[i].state.pos = tuple(1.01 * x for x in O.bodies[i].state.pos)
+	O.step()
+	forces = bonds.normalForces()
+	assert bonds.brokenCount == count // 2 and max(forces[1::2]) <= 0 < min(forces[::2])

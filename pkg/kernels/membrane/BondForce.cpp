@@ -164,7 +164,7 @@ void BondForce::gather(const std::vector<PaddedRings>& bond, double sign, Padded
 
 void BondForce::compute(BondState state, double dt)
 {
-	const bool central = law.central();
+	const bool central = law.central() && state.broken.empty();
 	if (!central) {
 		state.broken.resize(stencil.bondCount(), 0);
 		if (law.ks > 0) state.shear.resize(stencil.bondCount(), Vec3::Zero());

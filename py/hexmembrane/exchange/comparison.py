@@ -161,7 +161,7 @@ def _signed(contacts, notes):
 def _make(state, shown, taken, before, sign):
 	"""Bodies and contacts: (kn, ks, kr and rollingArm of a contact of unit material, by contact; the contacts with their two bodies)."""
 	material = O.materials.append(yade.LinearMat(emod=1, kratio=1, friction=0, rollingFriction=1, density=1000, label="unit"))
-	bodies = scenes.appendBalls(state.balls, material, dynamic=False)
+	bodies = scenes.appendBalls(state.balls, [material] * len(state.balls), dynamic=False)
 	O.engines = [yade.ForceResetter(), interactionLoop()]
 	first, now = state.contacts, shown.contacts
 	centres = dict(zip(state.balls["id"].tolist(), zip(state.balls.vectors().tolist(), state.balls["r"].tolist())))

@@ -9,10 +9,10 @@ import yade
 from yade import O, utils
 
 from hexmembrane.configuration import ConfigError
-from hexmembrane.exchange import comparison, scenes, tables
+from hexmembrane.exchange import comparison, materials, scenes, tables
 from hexmembrane.scene.builder import boxes, interactionLoop
 
-#: Relative difference of properties that count as one, and of planes that do.
+#: Relative difference of planes that count as one.
 _SAME = 1e-6
 _PLANES = 2000
 #: A ball that reaches through a wall by more than this share of its radius is behind it.
@@ -22,24 +22,26 @@ _BEHIND = 0.5
 def resume(state, damping=0.0):
 	"""Bring the state into YADE's empty scene, with the engines of the reference tier, one motion later than its tables.
 
-	Materials are labelled "grain" and "wall-ID". Each plane that a wall's contacts show is a fixed ``Platen`` with the wall's velocity.
+	Materials are those of :func:`hexmembrane.exchange.materials.materialsOf`. Each plane that a wall's contacts show is a fixed ``Platen`` with the wall's velocity.
 
 	:param state: :class:`hexmembrane.exchange.tables.State`, see :func:`hexmembrane.exchange.tables.read`. :param damping: PFC's damp, local damping.
 	:returns: ids of bodies, by PFC's number of the ball.
-	:raises ConfigError: contacts of one kind have different properties, a wall is not convex, or the tables lack velocities, density or the timestep.
+	:raises ConfigError: contacts of one pair of materials have different properties, a wall is not convex, or the tables lack velocities, density or the timestep.
 	"""
 	if len(O.bodies):
 		raise RuntimeError(f"O.bodies = {len(O.bodies)} bodies: an empty scene is needed; fix: O.reset() first")
 	_require(state)
 	contacts = state.contacts
-	springs, walls = _materials(state)
-	O.materials.append(yade.LinearMat(label="grain", density=float(state.balls["density"][0]), **springs))
-	for wall, own in walls.items():
-		O.materials.append(yade.LinearMat(label=f"wall-{wall:g}", density=float(state.balls["density"][0]), **own))
-	bodies = scenes.appendBalls(state.balls, "grain", dynamic=True)
+	made, pairs, labels = materials.materialsOf(state)
+	common = float(state.balls["density"][0])
+	for label, properties in made.items():
+		O.materials.append(yade.LinearMat(label=label, density=common, **properties))
+	for (one, two), properties in pairs.items():
+		O.materials[one].setPair(two, **properties)
+	bodies = scenes.appendBalls(state.balls, labels, dynamic=True)
 	for body, density in zip(bodies.values(), state.balls["density"].tolist()):
 		moving = O.bodies[body].state
-		factor = density / O.materials["grain"].density
+		factor = density / common
 		moving.mass, moving.inertia = factor * moving.mass, factor * moving.inertia
 	planes = _planes(state)
 	O.engines = [yade.ForceResetter(), interactionLoop()]
@@ -64,56 +66,6 @@ def _require(state):
 			raise ConfigError("balls.csv", str(state.folder), f"has balls without {name}", "export velocities, spins and density")
 	if not state.contacts.number("timestep") > 0:
 		raise ConfigError("contacts.csv", str(state.folder), "names no timestep in its first line", "export it by scripts/pfc.d")
-
-
-def _materials(state):
-	"""Keyword arguments of LinearMat for the grains, and for each wall by its number."""
-	contacts = state.contacts
-	units = comparison.units(state)
-	balls = numpy.array([kind == tables.BALL_BALL for kind in contacts["kind"]], dtype=bool)
-	if not balls.any():
-		raise ConfigError("contacts.csv", str(state.folder), "has no contact of two balls, so their stiffness is unknown", "a state whose balls touch")
-	common = {"friction": _one(state, balls, "fric", contacts["fric"]), "rollingFriction": _one(state, balls, "rr_fric", numpy.nan_to_num(contacts["rr_fric"]))}
-	kn, ratio = contacts["kn"], contacts["kn"] / contacts["ks"]
-	if _same(kn[balls]) and _same(contacts["ks"][balls]):
-		springs = {"kn": 2 * float(kn[balls][0]), "ks": 2 * float(contacts["ks"][balls][0])}
-		own = {name: numpy.full(len(contacts), springs[name]) for name in ("kn", "ks")}
-	else:
-		emod = _one(state, balls, "kn/(pi min(R1, R2)^2/(R1 + R2))", kn / units)
-		springs = {"emod": emod, "kratio": _one(state, balls, "kn/ks", ratio)}
-		own = {"kn": 2 * emod * units, "ks": 2 * emod * units / (springs["kratio"] or 1)}
-	walls = {}
-	for wall in sorted(set(contacts["end2"][~balls].tolist())):
-		mask = ~balls & (contacts["end2"] == wall)
-		friction = {"friction": _one(state, mask, "fric", contacts["fric"])}
-		rolling = {"rollingFriction": _one(state, mask, "rr_fric", numpy.nan_to_num(contacts["rr_fric"]))}
-		if "emod" in springs and _same(kn[mask] / units[mask], springs["emod"]):
-			walls[wall] = {**springs, **friction, **rolling}
-			continue
-		walls[wall] = {**friction, **rolling}
-		for name in ("kn", "ks"):
-			value = contacts[name]
-			rest = numpy.where(mask, 1 / value - 1 / own[name], 1)
-			if not (rest > 0).all():
-				wrong = f"wall {wall:g}: a contact has {name} = {value[mask].max():g} N/m, which no spring of a wall in series with the ball's own makes"
-				raise ConfigError("contacts.csv", str(state.folder), wrong, "properties of ball and wall, not of the pair (contact cmat)")
-			walls[wall][name] = _one(state, mask, f"{name} of the wall", 1 / rest)
-	return {**springs, **common}, walls
-
-
-def _same(values, value=None):
-	return len(values) > 0 and bool((abs(values / (values[0] if value is None else value) - 1) < _SAME).all())
-
-
-def _one(state, mask, name, values):
-	"""The one value of a property; 0 where no contact has it."""
-	found = values[mask]
-	if not len(found) or (found == 0).all():
-		return 0.0
-	if not _same(found):
-		wrong = f"{name} is from {found.min():g} to {found.max():g} in contacts of one kind"
-		raise ConfigError("contacts.csv", str(state.folder), wrong, "one material of balls and one of each wall; a script can set contact.phys one by one")
-	return float(found[0])
 
 
 def _planes(state):

@@ -18,10 +18,10 @@ from hexmembrane.scene.platens import platen
 _Z = yade.Vector3(0, 0, 1)
 
 
-def appendBalls(balls, material, dynamic):
-	"""Spheres of a table; ids of bodies by PFC's id."""
+def appendBalls(balls, materials, dynamic):
+	"""Spheres of a table; ids of bodies by PFC's id. ``materials``: that of each ball, as ``utils.sphere`` takes it."""
 	made = []
-	for centre, radius in zip(balls.vectors().tolist(), balls["r"].tolist()):
+	for centre, radius, material in zip(balls.vectors().tolist(), balls["r"].tolist(), materials):
 		made.append(utils.sphere(tuple(centre), radius, material=material, fixed=not dynamic))
 	return dict(zip(balls["id"].tolist(), O.bodies.append(made)))
 
