@@ -152,11 +152,11 @@ def test_insideTheStudysTests(O, tmp_path, capsys):
 def test_comparisonsOfTheStudy(tmp_path):
 	"""Differences by pairs of a seed, of tests whose numbers are known; a proportional limit at a knee."""
 	compare = loaded("examples/paper/study/compare.py")
-	strain = np.linspace(0, 0.01, 101)
-	assert compare.proportionalLimit(strain, np.minimum(2e7 * strain, 1e5)) == pytest.approx(1e5)
-	bent = np.where(strain < 0.004, 2e7 * strain, 8e4 + 1e7 * (strain - 0.004))  # leaves by a tenth where 8e4 + 1e7 (e - 0.004) = 1.8e7 e: e = 0.005
+	strain = numpy.linspace(0, 0.01, 101)
+	assert compare.proportionalLimit(strain, numpy.minimum(2e7 * strain, 1e5)) == pytest.approx(1e5)
+	bent = numpy.where(strain < 0.004, 2e7 * strain, 8e4 + 1e7 * (strain - 0.004))  # leaves by a tenth where 8e4 + 1e7 (e - 0.004) = 1.8e7 e: e = 0.005
 	assert compare.proportionalLimit(strain, bent) == pytest.approx(9e4, rel=1e-6)
-	assert np.isnan(compare.proportionalLimit(strain, 2e7 * strain))
+	assert numpy.isnan(compare.proportionalLimit(strain, 2e7 * strain))
 	tests = []
 	for seed, base in (("1", 100.0), ("2", 120.0), ("3", 140.0)):
 		for kind, factor in (("membrane", 1.0), ("wall", 1.1)):
