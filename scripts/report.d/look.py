@@ -31,13 +31,14 @@ _SPEED = """(async () => {
 	await scene.measure(8);
 	return [scene.stage.clientWidth, scene.stage.clientHeight, await scene.measure(60)];
 })()"""
-#: What is told of force chains after their box is clicked, and what is shown of the grains.
+#: What is told of force chains after their box is clicked, what is shown of the grains, and whether the picture has the tubes.
 _CHAINS = """(async () => {
 	const scene = report.state.parts[0];
 	if (!scene?.chains) return null;
 	[...document.querySelectorAll(".tools label")].find((one) => one.textContent === "force chains").querySelector("input").click();
 	await scene.fill();
-	return [scene.told.textContent, scene.options.grains];
+	scene.render();
+	return [scene.told.textContent, scene.options.grains, scene.renderer.info.render.triangles >= 2 * scene.chains.count];
 })()"""
 
 
@@ -104,7 +105,7 @@ def look(browser, path, out):
 		if min(text, curve) < _TEXT:
 			wrong.append(f"{theme}: contrast of text {text:.2f}, of curves {curve:.2f}")
 		if (chains := page.run(_CHAINS)) is not None:
-			if " carry " not in chains[0] or chains[1] != "none":
+			if " carry " not in chains[0] or chains[1] != "none" or not chains[2]:
 				wrong.append(f"force chains tell {chains}")
 			page.picture(out / f"{name}-chains-{theme}.png")
 			page.run(_CHAINS)

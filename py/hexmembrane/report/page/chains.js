@@ -1,7 +1,6 @@
 // Force chains: contacts as tubes, drawn as flat strips that face the reader and are shaded like cylinders.
 {
 	const VERTEX = `
-		attribute vec2 corner;
 		attribute vec3 start;
 		attribute vec3 end;
 		attribute float radius;
@@ -11,13 +10,13 @@
 		varying float across;
 		void main() {
 			vec3 a = (modelViewMatrix * vec4(start, 1.0)).xyz, b = (modelViewMatrix * vec4(end, 1.0)).xyz;
-			vec3 at = mix(a, b, corner.x), side = cross(b - a, at);
+			vec3 at = mix(a, b, position.x), side = cross(b - a, at);
 			float size = length(side);
-			gl_Position = projectionMatrix * vec4(at + (size > 0.0 ? corner.y * radius / size : 0.0) * side, 1.0);
+			gl_Position = projectionMatrix * vec4(at + (size > 0.0 ? position.y * radius / size : 0.0) * side, 1.0);
 			for (int k = 0; k < 2; ++k)
 				if (dot(0.5 * (start + end), cuts[k].xyz) > cuts[k].w) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 			shade = tint;
-			across = corner.y;
+			across = position.y;
 		}`;
 	const FRAGMENT = `
 		varying vec3 shade;
@@ -38,16 +37,16 @@
 			const most = Math.max(...frames.map((one) => one.ends.shape[1])),
 				geometry = (this.geometry = new THREE.BufferGeometry());
 			// four corners a contact, not instances: a processor draws each instance as a picture of its own
-			const corners = new Float32Array(2 * CORNERS * most),
+			const corners = new Float32Array(3 * CORNERS * most),
 				index = new Uint32Array(6 * most);
 			for (let k = 0; k < most; ++k) {
-				corners.set([0, -1, 1, -1, 1, 1, 0, 1], 2 * CORNERS * k);
+				corners.set([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0], 3 * CORNERS * k);
 				index.set(
 					[0, 1, 2, 0, 2, 3].map((one) => CORNERS * k + one),
 					6 * k,
 				);
 			}
-			geometry.setAttribute("corner", new THREE.BufferAttribute(corners, 2));
+			geometry.setAttribute("position", new THREE.BufferAttribute(corners, 3));
 			geometry.setIndex(new THREE.BufferAttribute(index, 1));
 			for (const [name, size] of [
 				["start", 3],
