@@ -55,7 +55,8 @@ void MembraneBonds::prepare()
 		throw std::runtime_error("MembraneBonds: the stored state of " + std::to_string(std::max(broken.size(), shearForces.size())) +
 		                         " bonds does not fit a membrane of " + std::to_string(bonds) + "; fix: a new MembraneBonds for another membrane");
 	for (int one : broken)
-		if (one != 0 && one != 1) hexmembrane::reject("MembraneBonds.broken", one, "is neither whole nor broken", "0 or 1 for each of HexMembrane.bonds");
+		if (one != 0 && one != 1)
+			hexmembrane::reject("MembraneBonds.broken", one, "is neither whole nor broken", "0 or 1 for each of HexMembrane.bonds");
 	kernel.reset(new hexmembrane::BondForce(membrane->stencil(), wanted));
 	restLength.assign(bonds, 2 * membrane->sphereRadius);
 	built = wanted;
