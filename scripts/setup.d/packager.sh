@@ -8,7 +8,7 @@ choosePackager() {
 	packager=(env)
 	if [[ $host == native ]]; then
 		[[ -n $(command -v dpkg-buildpackage) && -n $(command -v dh) ]] || die "there is no dpkg-buildpackage or dh in PATH." \
-			"fix: apt-get install --no-install-recommends dpkg-dev debhelper"
+			"fix: apt-get install --no-install-recommends build-essential debhelper"
 	else
 		local folder
 		folder=$cache/packager-$(rootHash)

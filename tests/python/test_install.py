@@ -2,12 +2,15 @@
 """``cmake --install`` beside a system's YADE: plain YADE then knows the classes and the package."""
 
 import os
+import pathlib
+import re
 import shutil
 import subprocess
 
 import hexmembrane
 import pytest
 
+ROOT = pathlib.Path(__file__).parents[2]
 SCRIPT = """
 import hexmembrane
 from yade.wrapper import HexMembrane
@@ -35,3 +38,15 @@ def test_plainYadeKnowsTheClasses(tmp_path):
 	found = subprocess.run(_over(tree, yade, "-n", "-x", str(script)), env=plain, cwd="/tmp", stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=300)
 	(line,) = [line for line in found.stdout.splitlines() if line.startswith("installed:")] or [found.stdout + found.stderr]
 	assert line.split()[1].startswith("/usr/lib/") and line.split()[2:] == [hexmembrane.__version__, "0.02", "Config"]
+
+
+def test_packageAsksForWhatTheBuildNeeds():
+	"""The Debian package is built with the packages that the set-up builds with, beside the YADE that it takes."""
+	control = (ROOT / "scripts" / "packaging" / "debian" / "control").read_text(encoding="utf-8")
+	needs = re.search(r"^Build-Depends: (.*?)^\S", control, re.MULTILINE | re.DOTALL)[1]
+	named = {part.split()[0] for part in needs.split(",")}
+	listed = (ROOT / "scripts" / "setup.d" / "packages.list").read_text(encoding="utf-8")
+	plugin = re.search(r"^# the plugin.*?\n(.*?)^#", listed, re.MULTILINE | re.DOTALL)[1].split()
+	assert set(plugin) - named == {"g++"}  # which every build has
+	version = re.search(r"^yadeVersion=(\S+)", (ROOT / "scripts" / "setup.d" / "common.sh").read_text(encoding="utf-8"), re.MULTILINE)[1]
+	assert control.count(f"yade (>= {version}), yade (<< ") == 2

@@ -120,12 +120,13 @@ MEASURE = {"bands": True, "replicates": 3, "strains": [0, 0.01, 0.02], "spacing"
 def test_insideTheStudysTests(O, tmp_path, capsys):
 	"""From a study's table of runs, of which one is not done, to the tables and pictures."""
 	short = {**loaded("examples/paper/paper_figure.py").SHORT, "shear": {"strain": 0.02, "velocity": 0.08}, "measure": MEASURE}
-	rows = ["run,set,boundary,consolidation.pressure,seed,status,folder", "0003,boundary,wall,150000.0,2,missing: shear has not ended,third", "0004,size,-,150000.0,1,done,no"]
+	rows = ["run,set,boundary,consolidation.pressure,membrane.particleRadius,specimen.porosity,seed,status,folder", "0003,boundary,wall,150000.0,-,-,2,missing: shear has not ended,third"]
 	for number, kind in enumerate(("membrane", "wall"), 1):
 		O.reset()
 		config = configuration.load(ROOT / "examples" / "paper" / "flexible-150.yaml")
 		run(configuration.derived(config, {"boundary": kind, **short}), tmp_path / kind, quiet=True)
-		rows.append(f"{number:04d},boundary,{kind},150000.0,1,done,{kind}")
+		rows.append(f"{number:04d},boundary,{kind},150000.0,-,-,1,done,{kind}")
+		rows.append(f"{number + 4:04d},porosity,{kind},-,-,0.4,{number},done,{kind}")
 	(tmp_path / "runs.csv").write_text("\n".join(rows) + "\n")
 	inside = loaded("examples/paper/study/inside.py")
 	out = tmp_path / "out"
@@ -136,7 +137,35 @@ def test_insideTheStudysTests(O, tmp_path, capsys):
 		assert min(Image.open(out / f"{name}.png").size) > 300, name
 	assert len(list((out / "150-s1").glob("*.vtp"))) == 6
 	assert [line.split(",")[:3] for line in (out / "groups.csv").read_text().splitlines()[1:]] == [["membrane", "150", "1"], ["wall", "150", "1"]]
+	compare = loaded("examples/paper/study/compare.py")
+	compare.main([str(tmp_path), str(out)])
+	lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in capsys.readouterr().out.splitlines() if line.startswith("|")]
+	assert [line[:2] for line in lines[:: len(compare.TOLD)]] == [["boundary", "150000.0, membrane"], ["boundary", "150000.0, wall"], ["porosity", "0.4, membrane"], ["porosity", "0.4, wall"]]
+	assert not (out / "compare.png").exists()  # of one pair there is no interval
 	(tmp_path / "runs.csv").write_text(rows[0] + "\n")
-	with pytest.raises(SystemExit):
-		inside.main([str(tmp_path), str(out)])
-	assert "no test of the set 'boundary' is done; fix: " in capsys.readouterr().err
+	for script, told in ((inside, "no test of the set 'boundary' is done; fix: "), (compare, "no test is done; fix: ")):
+		with pytest.raises(SystemExit):
+			script.main([str(tmp_path), str(out)])
+		assert told in capsys.readouterr().err
+
+
+def test_comparisonsOfTheStudy(tmp_path):
+	"""Differences by pairs of a seed, of tests whose numbers are known; a proportional limit at a knee."""
+	compare = loaded("examples/paper/study/compare.py")
+	strain = numpy.linspace(0, 0.01, 101)
+	assert compare.proportionalLimit(strain, numpy.minimum(2e7 * strain, 1e5)) == pytest.approx(1e5)
+	bent = numpy.where(strain < 0.004, 2e7 * strain, 8e4 + 1e7 * (strain - 0.004))  # leaves by a tenth where 8e4 + 1e7 (e - 0.004) = 1.8e7 e: e = 0.005
+	assert compare.proportionalLimit(strain, bent) == pytest.approx(9e4, rel=1e-6)
+	assert numpy.isnan(compare.proportionalLimit(strain, 2e7 * strain))
+	tests = []
+	for seed, base in (("1", 100.0), ("2", 120.0), ("3", 140.0)):
+		for kind, factor in (("membrane", 1.0), ("wall", 1.1)):
+			of = {"set": "boundary", "boundary": kind, "consolidation.pressure": "100000.0", "seed": seed}
+			tests.append({**of, "told": dict.fromkeys(compare.TOLD, factor * base)})
+	rows = {(row["case"], row["quantity"]): row for row in compare.compared("boundary", tests)}
+	wall = rows["100000.0, wall", "peak_q"]
+	assert (wall["tests"], wall["pairs"], wall["differs"]) == (3, 3, "yes") and wall["difference"] == pytest.approx(10) and wall["difference_half_width"] == pytest.approx(0, abs=1e-9)
+	assert wall["mean"] == pytest.approx(132) and rows["100000.0, wall", "end_porosity"]["difference"] == pytest.approx(12)
+	assert rows["100000.0, membrane", "peak_q"]["pairs"] == 0
+	compare.draw(list(rows.values()), tmp_path / "compare.png")
+	assert min(Image.open(tmp_path / "compare.png").size) > 100
