@@ -16,7 +16,7 @@ import pathlib
 import sys
 
 import numpy
-from hexmembrane.output import records
+from hexmembrane.output import records, tables
 from hexmembrane.report.summary import halfWidth, quantities
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -35,13 +35,14 @@ TOLD = {
 #: What is drawn.
 DRAWN = ("peak_q", "proportional_limit", "end_q", "end_volumetric_strain")
 OWN = {"consolidation.pressure": "100000.0", "membrane.particleRadius": "0.00075"}
+SETTINGS = ("centre", "cube", "open loop", "equal springs", "damping", "fixed rings", "no bending", "axial by platen", "as the study")
 #: Comparison -> (sets, what names a case, what a case and its reference share, values of the reference, its set).
 COMPARISONS = {
 	"boundary": (("boundary",), ("boundary",), ("consolidation.pressure",), {"boundary": "membrane"}, "boundary"),
 	"size": (("size",), ("membrane.particleRadius",), ("consolidation.pressure",), {"membrane.particleRadius": "0.0005"}, "size"),
 	"porosity": (("porosity",), ("boundary",), ("specimen.porosity",), {"boundary": "membrane"}, "porosity"),
 	"densest": (("densest",), ("boundary",), (), {"boundary": "membrane"}, "densest"),
-	"settings": (("centre", "cube", "open loop", "equal springs", "as the study"), ("set",), (), OWN, "size"),
+	"settings": (SETTINGS, ("set",), (), OWN, "size"),
 }
 
 
@@ -60,7 +61,7 @@ def proportionalLimit(strain, q):
 def told(path):
 	"""The quantities TOLD of a test's records, in their units."""
 	table = records.read(path)
-	shear = numpy.array([stage == "shear" for stage in table["stage"]])
+	shear = records.sheared(table)
 	table = {name: column[shear] for name, column in table.items() if name != "stage"}
 	values = {**quantities(table), "proportional_limit": proportionalLimit(table["axial_strain"], table["q"])}
 	return {name: factor * values[name] for name, (factor, _, _) in TOLD.items()}
@@ -133,10 +134,7 @@ def main(argv):
 	if not rows:
 		parser.exit(1, f"compare.py: {arguments.study}: no test is done; fix: run scripts/sweep on study.yaml\n")
 	arguments.out.mkdir(parents=True, exist_ok=True)
-	with open(arguments.out / "compare.csv", "w", encoding="utf-8", newline="") as file:
-		writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-		writer.writeheader()
-		writer.writerows({key: f"{value:.5g}" if isinstance(value, float) else value for key, value in row.items()} for row in rows)
+	tables.writeRows(arguments.out / "compare.csv", rows)
 	draw(rows, arguments.out / "compare.png")
 	for row in rows:
 		change = f"{row['difference']:+.3g} +- {row['difference_half_width']:.2g} {row['difference_unit']}, {row['pairs']} pairs" if row["pairs"] > 1 else "-"

@@ -61,14 +61,6 @@ def read(study):
 	return [Test(row, study) for row in rows]
 
 
-def written(path, rows):
-	"""Write rows (dictionaries of the same keys) as CSV."""
-	with open(path, "w", encoding="utf-8", newline="") as file:
-		writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-		writer.writeheader()
-		writer.writerows({key: f"{value:.6g}" if isinstance(value, float) else value for key, value in row.items()} for row in rows)
-
-
 def line(test, told):
 	"""One line of the printed table."""
 	cells = [test.name, ", ".join(f"{told[f'steps_{name}']} {name}" for name in VERDICTS), f"{told['index_largest']:.2f}"]
@@ -139,8 +131,8 @@ def main(argv):
 		parser.exit(1, f"inside.py: {arguments.study}: no test of the set '{SET}' is done; fix: run scripts/sweep on study.yaml\n")
 	out.mkdir(parents=True, exist_ok=True)
 	told = [test.told() for test in tests]
-	written(out / "tests.csv", [{"test": test.name, **one} for test, one in zip(tests, told)])
-	written(out / "groups.csv", grouped(tests))
+	tables.writeRows(out / "tests.csv", [{"test": test.name, **one} for test, one in zip(tests, told)])
+	tables.writeRows(out / "groups.csv", grouped(tests))
 	print("| test | steps | largest index | last band at | dip | thickness/d50 | Coulomb/Roscoe/Arthur | onset | porosity at the start, inside less outside |")
 	print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |", flush=True)
 	for test, one in zip(tests, told):

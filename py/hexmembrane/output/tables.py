@@ -2,6 +2,7 @@
 """CSV files that a test writes row by row: columns with units in the header, whole rows, cut at a checkpoint. Needs no YADE."""
 
 import contextlib
+import csv
 import dataclasses
 import errno
 import hashlib
@@ -195,6 +196,14 @@ def _cells(columns, text, line):
 		return [cell if column in text else float(cell) for column, cell in zip(columns, row)]
 	except ValueError:
 		raise ValueError("has a cell that is no number") from None
+
+
+def writeRows(path, rows):
+	"""Write dictionaries of the same keys as CSV, a row each, numbers with six digits: results that are kept and read, not gone on from."""
+	with open(path, "w", encoding="utf-8", newline="") as file:
+		writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+		writer.writeheader()
+		writer.writerows({key: f"{value:.6g}" if isinstance(value, float) else value for key, value in row.items()} for row in rows)
 
 
 def markdown(columns):
