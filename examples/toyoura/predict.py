@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Laboratory tests that grains were not calibrated on, predicted: scripts/yade examples/toyoura/predict.py CALIBRATION_FOLDER --out FOLDER [--tables].
+"""Laboratory tests that grains were not calibrated on, predicted: scripts/yade -x examples/toyoura/predict.py CALIBRATION_FOLDER --out FOLDER [--tables].
 
 Each draw from the posterior in ``sets.csv`` is one set of parameters and one packing of its own, so an interval has both scatters in it. The draws are the
 same at all conditions. A void ratio of the laboratory goes to the packing's by its relative density: from the calibrated density on, with the slope between
@@ -14,11 +14,13 @@ import math
 import pathlib
 import sys
 
+import hexmembrane
 import numpy
 from scipy.stats import t as student
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parents[1] / "scripts" / name) for name in ("calibrate.d", "sweep.d")]
+ROOT = pathlib.Path(hexmembrane.__file__).resolve().parents[2]  # YADE runs a script without its __file__
+HERE = ROOT / "examples" / "toyoura"
+sys.path[:0] = [str(ROOT / "scripts" / name) for name in ("calibrate.d", "sweep.d")]
 
 import calibrationfile  # noqa: E402
 import inside
@@ -27,12 +29,13 @@ import sweep
 from hexmembrane.configuration import derived
 from hexmembrane.laboratory.misfit import ofTest
 
-#: Numbers of the laboratory's tests in table1.csv that are predicted, those with a curve first: other pressures, the calibrated one, other void ratios,
-#: membranes of 0.1 and 0.3 mm at 9.8 and 4.9 kPa.
-TESTS = (45, 66, 53, 61, 50, 70, 64, 51, 72, 55, 47, 68, 22, 29, 12, 19)
+#: Numbers of the laboratory's tests in table1.csv that are predicted, those with a curve first: other pressures, the calibrated one, other void ratios.
+TESTS = (45, 66, 53, 61, 50, 70, 64, 51, 72, 55, 47, 68)
 CURVES = {45: "curve-49kPa-e0.658", 53: "curve-98kPa-e0.671", 66: "curve-196kPa-e0.677"}
 #: Void ratio and pressure [Pa] of the calibrated test; least and largest void ratio of Toyoura sand; the same of the packer's grains.
 CALIBRATED, PRESSURE, LIMITS, OURS = 0.671, 9.8e4, (0.605, 0.977), (0.710, 1.062)
+#: Void ratio of the laboratory's table of volumetric strains, and membrane of all these tests [m].
+VOID, LATEX = 0.70, 3e-4
 #: Strain over which a peak is a mean: a maximum of a curve of few grains is its noise.
 SMOOTH = 0.01
 STRAINS = 0.05, 0.10
@@ -44,6 +47,19 @@ def laboratory():
 	with open(HERE / "lab" / "table1.csv", encoding="utf-8") as file:
 		rows = [[float(cell) for cell in row] for row in list(csv.reader(file))[1:]]
 	return {int(number): {"pressure": 1e3 * pressure, "void ratio": void, "thickness": 1e-3 * thickness, "angle": angle} for number, pressure, void, thickness, angle in rows}
+
+
+def conditions():
+	"""{name: what :func:`laboratory` has of a test} of all that is predicted: TESTS, and a condition "e0.70-KPA" for each pair of volumetric strains of that table."""
+	found = {number: laboratory()[number] for number in TESTS}
+	with open(HERE / "lab" / "volumetric-strain-e0.70.csv", encoding="utf-8") as file:
+		rows = numpy.array([[float(cell) for cell in row] for row in list(csv.reader(file))[1:]])
+	at = [rows[rows[:, 0] == 100 * strain][:, 1:] for strain in STRAINS]
+	for pair in zip(*at):
+		pressure = 1e3 * math.sqrt(pair[0][0] * pair[1][0])
+		strains = [-float(numpy.interp(math.log(1e-3 * pressure), numpy.log(table[:, 0]), table[:, 1])) for table in at]
+		found[f"e0.70-{1e-3 * pressure:.3g}"] = {"pressure": pressure, "void ratio": VOID, "thickness": LATEX, "angle": math.nan, "strains": strains}
+	return found
 
 
 def curve(number):
@@ -75,8 +91,7 @@ def study(base, folder, count):
 	"""The tests: all conditions of a draw, then the next draw, so that what is cut off has as many of each."""
 	runs = []
 	for k, values in enumerate(draws(folder, count)):
-		for number in TESTS:
-			test = laboratory()[number]
+		for number, test in conditions().items():
 			own = {**values, "specimen.porosity": packed(values["specimen.porosity"], test["void ratio"]), studyfile.SEED: FIRST_SEED + k}
 			own |= {"consolidation.pressure": test["pressure"], "membrane.thickness": test["thickness"]}
 			own |= {"shear.velocity": base.shear.velocity * math.sqrt(test["pressure"] / PRESSURE)}
@@ -102,9 +117,10 @@ def interval(values):
 
 def ofLaboratory(number):
 	"""The same numbers of the laboratory's test; nan where it has none."""
-	angle = laboratory()[number]["angle"]
+	test = conditions()[number]
+	angle = test["angle"]
 	if number not in CURVES:
-		return [angle, *(math.nan for _ in STRAINS)]
+		return [angle, *test.get("strains", [math.nan for _ in STRAINS])]
 	return [angle, *(100 * float(numpy.interp(strain, *curve(number)["volumetric_strain"])) for strain in STRAINS)]
 
 
@@ -115,7 +131,7 @@ def tables(found, folder, say):
 		header += [f"{name} laboratory", f"{name} ours", f"{name} half width", f"{name} difference"]
 	rows = [header]
 	for number, series in found.items():
-		test = laboratory()[number]
+		test = conditions()[number]
 		row = [number, f"{1e-3 * test['pressure']:g}", test["void ratio"], f"{1e3 * test['thickness']:g}", len(series)]
 		for there, ours in zip(ofLaboratory(number), zip(*map(numbers, series))):
 			mean, half = interval(ours)
@@ -148,15 +164,29 @@ def figure(found, path):
 			axes.set_ylabel("sigma1/sigma3 [-]" if factor == 1 else "volumetric strain [%]")
 		there = [row for row in laboratory().values() if row["pressure"] == pressure]
 		angles.plot([row["void ratio"] for row in there], [row["angle"] for row in there], "o", color=color, ms=3, label=f"laboratory, {1e-3 * pressure:g} kPa")
-		ours = [(laboratory()[n]["void ratio"], *interval([numbers(one)[0] for one in series])) for n, series in found.items() if laboratory()[n]["pressure"] == pressure]
+		ours = [(laboratory()[n]["void ratio"], *interval([numbers(one)[0] for one in series])) for n, series in found.items() if n in TESTS and laboratory()[n]["pressure"] == pressure]
 		if ours:
 			angles.errorbar(*numpy.array(sorted(ours)).T, fmt="s-", color=color, lw=0.7, ms=4, capsize=2)
 	angles.set_xlabel("void ratio [-]")
 	angles.set_ylabel("peak friction angle [deg]")
 	angles.legend(frameon=False, fontsize="small")
-	panels[1][1].set_visible(False)
+	fig19(panels[1][1], found)
 	drawn.suptitle("Toyoura sand: lines and squares are tests with grains from the curve at 98 kPa alone")
 	drawn.savefig(path, dpi=110)
+
+
+def fig19(axes, found):
+	"""Volumetric strain at STRAINS over the pressure at the void ratio VOID."""
+	for k, (strain, color) in enumerate(zip(STRAINS, ("#1f4e79", "#b5561c"))):
+		points = [(1e-3 * conditions()[n]["pressure"], ofLaboratory(n)[1 + k], *interval([numbers(one)[1 + k] for one in series])) for n, series in found.items() if n not in TESTS]
+		if points:
+			pressure, there, mean, half = numpy.array(sorted(points)).T
+			axes.plot(pressure, there, "o", color=color, ms=3, mec="k", mew=0.3, label=f"laboratory, at {100 * strain:g} %")
+			axes.errorbar(pressure, mean, half, fmt="s-", color=color, lw=0.7, ms=4, capsize=2)
+			axes.legend(frameon=False, fontsize="small")
+	axes.set_xscale("log")
+	axes.set_xlabel("sigma3 [kPa]")
+	axes.set_ylabel(f"volumetric strain at e = {VOID:g} [%]")
 
 
 def main(argv):

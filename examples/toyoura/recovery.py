@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Do known grains come back from one test of theirs? scripts/yade examples/toyoura/recovery.py CALIBRATION_FOLDER.
+"""Do known grains come back from one test of theirs? scripts/yade -x examples/toyoura/recovery.py CALIBRATION_FOLDER.
 
 A trial takes one test (one packing) of one set as the laboratory's, with noise of reading on it. The other sets' tests are what a calibration has. Between
 them curves are a quadratic in the parameters, fitted without the trial's set; the posterior is over a quasi-random cloud in the prior's box. So curves are
@@ -11,10 +11,12 @@ import json
 import pathlib
 import sys
 
+import hexmembrane
 import numpy
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parents[1] / "scripts" / name) for name in ("calibrate.d", "sweep.d")]
+ROOT = pathlib.Path(hexmembrane.__file__).resolve().parents[2]  # YADE runs a script without its __file__
+HERE = ROOT / "examples" / "toyoura"
+sys.path[:0] = [str(ROOT / "scripts" / name) for name in ("calibrate.d", "sweep.d")]
 
 import calibrationfile  # noqa: E402
 import evaluate
