@@ -48,7 +48,7 @@ class Search:
 		"""What the drawn sets depend on."""
 		c = self.calibration
 		ranges = [[p.key, p.low, p.high, p.log] for p in c.parameters]
-		return {"parameters": ranges, "samples": c.samples, "method": c.method, "randomSeed": c.randomSeed}
+		return {"parameters": ranges, "samples": c.samples, "method": c.method, "randomSeed": c.randomSeed, "seeds": list(c.seeds), "model": c.model}
 
 	def _read(self):
 		try:
@@ -58,7 +58,7 @@ class Search:
 		except ValueError as error:
 			raise ConfigError("--out", str(self.path), f"cannot be read ({error})", "choose another folder") from None
 		if kept.get("stamp") != self._stamp():
-			raise ConfigError("--out", str(self.path.parent), "holds a calibration with other parameters, samples, method or randomSeed", "choose another folder")
+			raise ConfigError("--out", str(self.path.parent), "holds a calibration with other parameters, samples, method, randomSeed, seeds or model", "choose another folder")
 		return [numpy.array(points) for points in kept["generations"]]
 
 	def keep(self, points):

@@ -5,6 +5,7 @@ import dataclasses
 import itertools
 import math
 import pathlib
+from typing import Optional
 
 import numpy
 import plan as plans
@@ -25,7 +26,7 @@ KEYS = {
 	"method": "'bayes' (default): posterior by sequential Monte Carlo; 'best': the best fit alone, by optuna",
 	"samples": "sets of parameters a generation (32)",
 	"generations": "how many generations (4)",
-	"model": "what the best model is wrong by, as share of a curve's largest value (0.03)",
+	"model": "what the best model is wrong by, as share of a curve's largest value (0.03), or `infer`: from the curves themselves",
 	"randomSeed": "of the design and the proposals (1)",
 	"start": "a table of GrainLearning whose sets are the first generation",
 	"attempts": "how often a stage is tried before it counts as failed (2)",
@@ -72,7 +73,7 @@ class Calibration:
 	method: str
 	samples: int
 	generations: int
-	model: float
+	model: Optional[float]  # None: inferred
 	randomSeed: int
 	attempts: int
 	start: numpy.ndarray | None
@@ -185,8 +186,10 @@ def _whole(given, key, default, low, high):
 
 def _share(given):
 	value = given.get("model", 0.03)
+	if value == "infer":
+		return None
 	if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 <= value <= 1:
-		raise ConfigError("calibration.model", value, "is no share from 0 to 1", "give 0.03, say")
+		raise ConfigError("calibration.model", value, "is no share from 0 to 1", "give 0.03, say, or infer")
 	return float(value)
 
 

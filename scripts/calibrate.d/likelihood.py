@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How likely a laboratory's curves are with a set of parameters, the scatter of packings measured. Needs no YADE.
 
-Errors along one curve hang together, so they count as a Gaussian process: covariance s_i s_j exp(-|e_i - e_j|/LENGTH) between strains e_i, e_j, with
-s^2 = packing^2 (1 + 1/seeds) + reading^2 + model^2. packing: scatter over seeds, pooled over all sets of parameters; the laboratory's specimen is one
-packing more. reading: of the laboratory's numbers. model: what the best model is wrong by, a share of the curve's largest value.
+Errors along one curve hang together, so they count as a Gaussian process. Its covariance between strains e_i and e_j is
+s_i s_j exp(-|e_i - e_j|/LENGTH) + model^2 exp(-(e_i - e_j)^2/(2 LENGTH^2)), s^2 = packing^2 (1 + 1/seeds) + reading^2: a packing's curve is rough, what a model gets
+wrong is smooth. packing: scatter over seeds, pooled over all sets of parameters; the laboratory's specimen is one packing more. reading: of the laboratory's numbers. model: what the best model is wrong by, a share of the curve's largest value; where it is not known it is a
+parameter of its own, with the same chance for each factor from the least to the largest of MODELS, that the likelihood is averaged over.
 """
 
 import dataclasses
+import math
 
 import numpy
 from scipy.linalg import cho_factor, cho_solve
+from scipy.special import logsumexp
 
 #: Strain over which errors hang together.
 LENGTH = 0.02
@@ -19,6 +22,8 @@ READING = {"stress_ratio": 0.05, "volumetric_strain": 0.0015}
 POINTS = 25
 #: Steps between readings that are so many medians wide, and wider than half LENGTH, are gaps: a straight line over one is no reading.
 GAP = 3
+#: Model errors, as shares of a curve's largest value, where they are inferred.
+MODELS = tuple(float(share) for share in numpy.geomspace(0.01, 0.3, 9))
 
 
 @dataclasses.dataclass
@@ -56,10 +61,13 @@ def _inGap(read, strain):
 
 
 class Evaluations:
-	"""What tests gave at the targets' strains. ``add`` one set of parameters after the other."""
+	"""What tests gave at the targets' strains. ``add`` one set of parameters after the other.
+
+	:param model: what the best model is wrong by, as a share of a curve's largest value; None: inferred.
+	"""
 
 	def __init__(self, targets, model):
-		self.targets, self.model = targets, model
+		self.targets, self._models = targets, MODELS if model is None else (model,)
 		self._sets = []  # of each set {target's key: (seeds, points)}, None where no seed was done
 
 	def add(self, series):
@@ -90,13 +98,29 @@ class Evaluations:
 				freedom += len(rows[target.key]) - 1
 		return numpy.sqrt(squares / max(freedom, 1))
 
-	def deviation(self, target, seeds):
-		"""Standard deviation of laboratory less mean of ``seeds`` tests, at the target's strains."""
-		model = self.model * abs(target.value - target.value[0]).max()
-		return numpy.sqrt(self.packing(target) ** 2 * (1 + 1 / seeds) + READING[target.quantity] ** 2 + model**2)
+	def covariance(self, target, seeds, model):
+		"""(points, points) covariance of laboratory less mean of ``seeds`` tests at the target's strains; ``model``: the share that the model is wrong by."""
+		rough = numpy.sqrt(self.packing(target) ** 2 * (1 + 1 / seeds) + READING[target.quantity] ** 2)
+		smooth = model * abs(target.value - target.value[0]).max()
+		apart = (target.strain[:, None] - target.strain) / LENGTH
+		return numpy.outer(rough, rough) * numpy.exp(-abs(apart)) + smooth**2 * numpy.exp(-0.5 * apart**2)
 
 	def logLikelihood(self):
 		"""(sets,) log likelihoods; -inf for a set whose tests failed."""
+		return logsumexp([self._ofModel(model) for model in self._models], axis=0) - math.log(len(self._models))
+
+	def modelError(self, weight):
+		"""(mean, low, high) of the model error, a share: its root mean square and a 95 % interval; all the same where it is given. ``weight``: (sets,) of the sets."""
+		chance = numpy.zeros(len(self._models))
+		each = numpy.array([self._ofModel(model) for model in self._models])
+		for k in numpy.flatnonzero(weight):
+			chance += weight[k] * numpy.exp(each[:, k] - logsumexp(each[:, k]))
+		models, risen = numpy.array(self._models), numpy.cumsum(chance) / chance.sum()
+		low, high = (models[min(int(numpy.searchsorted(risen, share)), len(models) - 1)] for share in (0.025, 0.975))
+		return float(numpy.sqrt(chance @ models**2 / chance.sum())), float(low), float(high)
+
+	def _ofModel(self, model):
+		"""(sets,) log likelihoods at a model error."""
 		found = numpy.full(len(self._sets), -numpy.inf)
 		factors = {}
 		for k, rows in enumerate(self._sets):
@@ -106,16 +130,15 @@ class Evaluations:
 			for target in self.targets:
 				seeds = len(rows[target.key])
 				if (target.key, seeds) not in factors:
-					factors[target.key, seeds] = self._factor(target, seeds)
+					factors[target.key, seeds] = self._factor(target, seeds, model)
 				factor, logDeterminant = factors[target.key, seeds]
 				apart = rows[target.key].mean(axis=0) - target.value
 				total -= 0.5 * (apart @ cho_solve(factor, apart) + logDeterminant)
 			found[k] = total
 		return found
 
-	def _factor(self, target, seeds):
-		deviation = self.deviation(target, seeds)
-		covariance = numpy.outer(deviation, deviation) * numpy.exp(-abs(target.strain[:, None] - target.strain) / LENGTH)
+	def _factor(self, target, seeds, model):
+		covariance = self.covariance(target, seeds, model)
 		covariance[numpy.diag_indices_from(covariance)] *= 1 + 1e-9
 		factor = cho_factor(covariance, lower=True)
 		return factor, 2 * float(numpy.log(numpy.diag(factor[0])).sum())

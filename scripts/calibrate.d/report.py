@@ -72,10 +72,12 @@ def write(calibration, folder, sets, evaluations, weight, failed, say):
 		one = derived(test.config, studyfile.nested(calibration.values(points[best])))
 		configuration.save(one, folder / (BEST if len(calibration.tests) == 1 else f"best-{name}.yaml"))
 	if calibration.method == "bayes":
-		found = summary(calibration, points, weight)
-		writeText(folder / POSTERIOR, json.dumps({**found, "best": calibration.values(points[best]), "targets": _targets(evaluations)}, indent=1) + "\n")
+		found, model = summary(calibration, points, weight), evaluations.modelError(weight)
+		writeText(folder / POSTERIOR, json.dumps({**found, "best": calibration.values(points[best]), "model_error": model, "targets": _targets(evaluations, model[0])}, indent=1) + "\n")
 		for key, one in found["parameters"].items():
 			say(f"{key}: {one['median']:.4g} ({one['low']:.4g} to {one['high']:.4g})" + ("" if one["determined"] else "; the curves do not determine it"))
+		if calibration.model is None:
+			say("model error: {:.3g} ({:.3g} to {:.3g}) of a curve's largest value".format(*model))
 		if found["effective_sets"] < 10:
 			say(f"WARNING: the posterior rests on {found['effective_sets']:.1f} effective sets; fix: more generations or samples (a larger 'generations' goes on from here)")
 		_drawPosterior(calibration, points, weight, found, folder / "posterior.png")
@@ -112,9 +114,9 @@ def _table(calibration, sets, logs, weight, failed):
 	return text.getvalue()
 
 
-def _targets(evaluations):
+def _targets(evaluations, model):
 	return [
-		{"curve": target.curve, "quantity": target.quantity, "points": len(target.strain), "packing": float(evaluations.packing(target).mean()), "deviation": float(evaluations.deviation(target, 1).mean())}
+		{"curve": target.curve, "quantity": target.quantity, "points": len(target.strain), "packing": float(evaluations.packing(target).mean()), "deviation": float(numpy.sqrt(numpy.diag(evaluations.covariance(target, 1, model))).mean())}
 		for target in evaluations.targets
 	]
 

@@ -169,6 +169,7 @@ def test_grainLearning(tmp_path, madeUp):
 		({"samples": 2}, "calibration.samples"),
 		({"method": "guess"}, "calibration.method"),
 		({"model": 3}, "calibration.model"),
+		({"model": "none"}, "calibration.model"),
 		({"curves": None}, "calibration.curves"),
 		({"curves": {"lab": {"file": "nowhere.csv", "strain": "e", "stress_ratio": "sr"}}}, "curves.lab.file"),
 		({"start": "nowhere.txt"}, "calibration.start"),
@@ -223,6 +224,35 @@ def test_likelihood():
 	apart = numpy.full(likelihood.POINTS, 0.3)
 	assert logs[0] - logs[1] == pytest.approx(0.5 * apart @ numpy.linalg.solve(covariance, apart), rel=1e-5)
 	assert logs[2] == logs[3] == -numpy.inf
+	assert found.modelError(numpy.array([0.5, 0.5, 0, 0])) == (0, 0, 0)
+
+
+@pytest.mark.parametrize("share", (0.0, 0.1))
+def test_modelErrorIsInferred(share):
+	"""Curves that are wrong by a known share, as the likelihood takes it: the interval holds it, and the likelihood is the mean of those with each share."""
+	covered, means = 0, []
+	for trial in range(10):
+		random = numpy.random.default_rng(trial)
+		curve = Curve("c", {"stress_ratio": Series(STRAIN, 1 + 20 * STRAIN)}, [])
+		target = likelihood.targets({"c": curve}, {"c": 0.15})[0]
+		grid = numpy.linspace(0, 0.15, 1 + 6 * likelihood.POINTS)  # the target's strains are among these
+		apart = (grid[:, None] - grid) / likelihood.LENGTH
+		size = share * 20 * target.strain[-1]
+		covariance = likelihood.READING["stress_ratio"] ** 2 * numpy.exp(-abs(apart)) + size**2 * numpy.exp(-0.5 * apart**2)
+		wrong = random.multivariate_normal(numpy.zeros(len(grid)), covariance, method="eigh")
+		series = {"stress_ratio": Series(grid, 1 + 20 * grid + wrong)}
+		found = likelihood.Evaluations([target], None)
+		found.add({"c": [series] * 2})
+		mean, low, high = found.modelError(numpy.ones(1))
+		covered += low <= max(share, likelihood.MODELS[0]) <= high
+		means.append(mean)
+		each = []
+		for one in likelihood.MODELS:
+			known = likelihood.Evaluations([target], one)
+			known.add({"c": [series] * 2})
+			each.append(numpy.exp(known.logLikelihood()[0]))
+		assert numpy.exp(found.logLikelihood()[0]) == pytest.approx(numpy.mean(each))
+	assert covered >= 9 and (numpy.mean(means) < 0.03 if share == 0 else 0.06 < numpy.mean(means) < 0.2)
 
 
 def test_gapsAreNotCompared():
