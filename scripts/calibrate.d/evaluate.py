@@ -23,10 +23,14 @@ class Tests:
 	def __init__(self, calibration, folder, arguments, say):
 		self.calibration, self.folder = calibration, pathlib.Path(folder) / TESTS
 		self._arguments, self._say = arguments, say
+		self._planned = None, None
 
 	def plan(self, sets):
-		"""(plan, its input files) of the sets, [(name, point)]."""
-		return plans.make(self.calibration.study(sets))
+		"""(plan, its input files) of the sets, [(name, point)]; made once for the same sets in a row."""
+		names = [name for name, _ in sets]
+		if self._planned[0] != names:
+			self._planned = names, plans.make(self.calibration.study(sets))
+		return self._planned[1]
 
 	def run(self, sets):
 		"""Run what has not been run of the sets."""
