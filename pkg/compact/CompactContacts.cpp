@@ -203,20 +203,25 @@ Real CompactLoop::criticalTimeStep()
 {
 	requireRun("criticalTimeStep");
 	hexmembrane::CriticalStep step(state->spheres);
-	const auto& ids = state->spheres.id;
+	// row of a body, -1 where the next step refuses it; the map is made when it is first asked
+	std::unordered_map<Body::id_t, int> rows;
+	const auto rowOf = [&](Body::id_t body) {
+		const auto& ids = state->spheres.id;
+		if (rows.empty())
+			for (size_t i = 0; i < ids.size(); ++i) rows[ids[i]] = static_cast<int>(i);
+		const auto found = rows.find(body);
+		return found == rows.end() ? -1 : found->second;
+	};
 	for (Stepped* one : stepped) {
 		one->forEachBond([&](int first, int second, const Vector3r& branch, Real kn, Real ks) { step.addBond(first, second, branch, kn, ks); });
 		one->forEachSupport([&](int particle, Body::id_t grain, const Vector3r& normal, Real kn) {
-			step.addSupport(particle, static_cast<int>(std::find(ids.begin(), ids.end(), grain) - ids.begin()), normal, kn);
+			if (const int row = rowOf(grain); row >= 0) step.addSupport(particle, row, normal, kn);
 		});
-		std::unordered_map<Body::id_t, int> rowOf; // made when there is a joint
 		one->forEachJointSpring(
 		        [&](Body::id_t first, Body::id_t second, const Vector3r& normal, const std::array<Real, 2>& arms, const JointStiffness& k) {
-			        if (rowOf.empty())
-				        for (size_t i = 0; i < ids.size(); ++i) rowOf[ids[i]] = static_cast<int>(i);
-			        const auto a = rowOf.find(first), b = rowOf.find(second);
-			        if (a == rowOf.end() || b == rowOf.end()) return; // the next step refuses it
-			        step.addJoint(a->second, b->second, normal, arms[0], arms[1], {k.normal, k.shear, 0, k.bending, 0}, k.twisting);
+			        const int a = rowOf(first), b = rowOf(second);
+			        if (a < 0 || b < 0) return;
+			        step.addJoint(a, b, normal, arms[0], arms[1], {k.normal, k.shear, 0, k.bending, 0}, k.twisting);
 		        });
 	}
 	if (state->sheet.ids)
