@@ -27,8 +27,6 @@ WITHOUT_YADE = (
 	"scene.geometry",
 	"scene.membrane_loads",
 	"scene.sheet_state",
-	"measure.bands",
-	"measure.band_search",
 	"output.tables",
 	"output.fields",
 	"output.inside",

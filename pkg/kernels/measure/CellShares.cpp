@@ -32,6 +32,39 @@ double ConvexPart::fraction() const
 	return sum;
 }
 
+double ConvexPart::fractionBeyond(const std::vector<double>& side) const
+{
+	const auto crossing = [&](int a, int b) -> Vec3 { return (side[a] * corners[b] - side[b] * corners[a]) / (side[a] - side[b]); };
+	const auto differ = [&](int a, int b) { return (side[a] > 0 && side[b] < 0) || (side[a] < 0 && side[b] > 0); };
+	// seen from a point of the border, the face on the border has no volume
+	const Vec3 apex = [&]() -> Vec3 {
+		for (std::size_t f = 0; f < faces.size(); f += faces[f] + 1)
+			for (int k = 1; k < faces[f]; ++k) {
+				const int a = faces[f + k], b = faces[f + k + 1];
+				if (side[a] == 0) return corners[a];
+				if (differ(a, b)) return crossing(a, b);
+			}
+		return corners[0];
+	}();
+	double sum = 0;
+	for (std::size_t f = 0; f < faces.size(); f += faces[f] + 1) {
+		const int count = faces[f], *corner = &faces[f + 1];
+		Vec3 first, last;
+		int met = 0;
+		const auto meet = [&](const Vec3& x) {
+			const Vec3 seen = x - apex;
+			if (++met > 2) sum += first.dot(last.cross(seen));
+			(met == 1 ? first : last) = seen;
+		};
+		for (int k = 0; k < count; ++k) {
+			const int a = corner[k], b = corner[k + 1 < count ? k + 1 : 0];
+			if (side[a] >= 0) meet(corners[a]);
+			if (differ(a, b)) meet(crossing(a, b));
+		}
+	}
+	return sum;
+}
+
 void ConvexPart::clip(const ConvexPart& of, const std::vector<double>& side)
 {
 	corners.clear();
@@ -127,10 +160,14 @@ void CellShares::gather(const std::array<Vec3, 4>& x, const std::array<int, 4>& 
 	candidates.clear();
 	powers.clear();
 	++turn;
+	// less the square of the corner's place, which is the same for all sites; seen from the first corner, lest large numbers cancel
+	const std::array<Vec3, 3> edges{x[1] - x[0], x[2] - x[0], x[3] - x[0]};
 	const auto look = [&](int site) {
 		if (seenBy[site] == turn) return;
 		seenBy[site] = turn;
-		const AtCorners mine{power(site, x[0]), power(site, x[1]), power(site, x[2]), power(site, x[3])};
+		const Vec3 d = sites[site].centre - x[0];
+		const double first = d.squaredNorm() - sites[site].radius * sites[site].radius;
+		const AtCorners mine{first, first - 2 * d.dot(edges[0]), first - 2 * d.dot(edges[1]), first - 2 * d.dot(edges[2])};
 		if (!mayOwn(mine)) return;
 		powers.push_back(mine);
 		candidates.push_back(site);
@@ -184,13 +221,13 @@ void CellShares::divide(const std::array<Vec3, 4>& x, const std::array<int, 4>& 
 	owned.assign(candidates.size(), 0);
 	active.resize(candidates.size());
 	for (std::size_t c = 0; c < active.size(); ++c) active[c] = static_cast<int>(c);
-	settle(*part, 0, depth);
+	settle(*part, part == &unit ? 1 : part->fraction(), 0, depth);
 	for (std::size_t c = 0; c < candidates.size(); ++c)
 		if (owned[c] > 0) out.push_back({candidates[c], owned[c]});
 }
 
 // Compares the first candidate of the last list with the others until one is left, or the border of two crosses the part.
-void CellShares::settle(const ConvexPart& part, int begin, std::size_t depth)
+void CellShares::settle(const ConvexPart& part, double fraction, int begin, std::size_t depth)
 {
 	const auto apart = [&](int a, int b) {
 		const AtCorners &one = powers[a], &other = powers[b];
@@ -214,19 +251,28 @@ void CellShares::settle(const ConvexPart& part, int begin, std::size_t depth)
 	}
 	const int a = active[begin];
 	if (rival < 0) {
-		owned[a] += part.fraction();
+		owned[a] += fraction;
 		return;
 	}
 	const int b = active[rival], end = static_cast<int>(active.size());
+	signs(part, apart(a, b));
+	if (end - begin == 2) {
+		const double mine = part.fractionBeyond(sides);
+		owned[a] += mine;
+		owned[b] += fraction - mine;
+		return;
+	}
 	ConvexPart& half = spare(depth);
+	double left = fraction;
 	for (int winner : {a, b}) {
-		const int loser = winner == a ? b : a;
-		signs(part, apart(winner, loser));
+		if (winner == b) signs(part, apart(b, a));
 		half.clip(part, sides);
 		active.push_back(winner);
 		for (int k = begin; k < end; ++k)
 			if (active[k] != a && active[k] != b) active.push_back(active[k]);
-		settle(half, end, depth + 1);
+		const double own = winner == a ? half.fraction() : left;
+		left -= own;
+		settle(half, own, end, depth + 1);
 		active.resize(end);
 	}
 }

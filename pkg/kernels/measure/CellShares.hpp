@@ -16,6 +16,8 @@ struct ConvexPart {
 	static ConvexPart whole();
 	/// Volume over that of the tetrahedron.
 	double fraction() const;
+	/// That of the part where `side` (one a corner) is not negative; some are negative and some positive.
+	double fractionBeyond(const std::vector<double>& side) const;
 	/// Makes this the part of `of` where `side` (one a corner of `of`) is not negative; some are negative and some positive. The other part, by the opposite
 	/// sides, meets this one in the very same corners, so that the two add up to the whole.
 	void clip(const ConvexPart& of, const std::vector<double>& side);
@@ -52,7 +54,7 @@ private:
 	double power(int site, const Vec3& x) const { return (x - sites[site].centre).squaredNorm() - sites[site].radius * sites[site].radius; }
 	void gather(const std::array<Vec3, 4>& x, const std::array<int, 4>& at);
 	bool mayOwn(const AtCorners& powers) const;
-	void settle(const ConvexPart& part, int begin, std::size_t depth);
+	void settle(const ConvexPart& part, double fraction, int begin, std::size_t depth);
 	/// Fills `sides` with a linear function, given at the tetrahedron's corners, at those of a part; whether it is somewhere negative, somewhere positive.
 	std::array<bool, 2> signs(const ConvexPart& part, const AtCorners& values);
 	ConvexPart& spare(std::size_t depth);

@@ -12,7 +12,7 @@ parallel to the plane, whose displacement fits best: linear across the slab, con
 
 The localisation index is the share of the specimen's deviatoric strain that A exp(-6 s^2/t^2) stands for: what bands carry above all that is symmetric, 1 at
 most. Uniform strain and a barrel have about 0. There is a band when the index is INDEX_LIMIT or more, the jump explains EXPLAINED_LIMIT or more of the displacement
-that is neither symmetric nor affine, and neither dip nor thickness is at a limit of the search: there the index says nothing. Uses nothing of YADE.
+that is neither symmetric nor affine, and neither dip nor thickness is at a limit of the search: there the index says nothing.
 """
 
 import dataclasses
@@ -145,7 +145,7 @@ class _Step:
 		self._take(Search(*arrays))
 
 	def _take(self, search):
-		self.search, self.nothing = search, search.field()
+		self.search, self.left = search, search.squares.left()[0]
 		self.strain = search.weights @ search.strain
 
 	@functools.cached_property
@@ -159,21 +159,22 @@ class _Step:
 		made._take(self.search.weighted(weights))
 		return made
 
-	def _each(self, planes):
-		"""Each plane with the field that has the others in its model."""
-		return [(plane, self.search.field([*planes[:k], *planes[k + 1 :]])) for k, plane in enumerate(planes)]
+	@staticmethod
+	def _each(planes):
+		"""Each plane with the others."""
+		return [(plane, [*planes[:k], *planes[k + 1 :]]) for k, plane in enumerate(planes)]
 
 	def slabs(self, planes):
 		"""The slab of uniform shear of each plane, and the jump across it."""
-		return [self.search.thickness(field, plane) for plane, field in self._each(planes)]
+		return [self.search.slab(plane, others) for plane, others in self._each(planes)]
 
 	def explained(self, planes):
-		return float(1 - self.search.field(planes).left[0] / self.nothing.left[0])
+		return float(1 - self.search.squares.left(np.array(planes))[0] / self.left)
 
 	def indices(self, planes):
 		"""The localisation index of each plane."""
 		shares = [self.search.weights @ slabProfile(self.search.x, plane) for plane in planes]
-		return [float(field.excess(plane)[0] * share / self.strain) for (plane, field), share in zip(self._each(planes), shares)]
+		return [float(self.search.squares.excess(plane, others)[0] * share / self.strain) for (plane, others), share in zip(self._each(planes), shares)]
 
 	def areBands(self, planes):
 		"""Whether they are."""
@@ -198,7 +199,7 @@ class _Step:
 
 	def symmetricVariation(self):
 		"""Coefficient of variation of the part of the strain that is symmetric about the axis."""
-		fit, weights = self.nothing.explainedStrain, self.search.weights / self.search.weights.sum()
+		fit, weights = self.search.squares.symmetricStrain(), self.search.weights / self.search.weights.sum()
 		mean = weights @ fit
 		return float(np.sqrt(weights @ (fit - mean) ** 2) / mean)
 

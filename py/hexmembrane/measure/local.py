@@ -38,7 +38,10 @@ class LocalHistory:
 
 	def __init__(self, scene, state=None):
 		self._take(scene)
-		self._local.setReference(*(() if state is None else (state["reference"],)))
+		if state is None:
+			found = self._local.measure(advance=True)  # the same cells are the reference's
+		else:
+			self._local.setReference(state["reference"])
 		self.ids = self._local.reference["ids"]
 		self.radii = BodyArrays.radii(self.ids.tolist())
 		n = len(self.ids)
@@ -46,7 +49,6 @@ class LocalHistory:
 			shapes = {"volumetric": n, "deviatoric": n, "rotation": (n, 3)}
 			self._sums = {name: np.zeros(shapes[name]) for name in _SUMMED}
 			self.startPositions = BodyArrays.positions(self.ids.tolist())
-			found = self._local.measure()
 			self.startVolumes = found["volume"]
 			self.fields = self._fields(found, {**self._sums, "nonAffine": np.zeros(n)})
 		else:
