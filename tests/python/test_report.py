@@ -123,6 +123,7 @@ def test_seedsAreOneMean(tmp_path):
 	each = 2 * (1 - math.exp(-5)) * np.array([1, 1 / 3])
 	assert ratio == pytest.approx(each.mean(), rel=1e-5) and half == pytest.approx(12.7062 * each.std(ddof=1) / math.sqrt(2), rel=1e-4)
 	assert {one["key"] for one in found["differences"]} == {"specimen.seed", "shear.strain"}
+	assert group["name"] == "mean of 2: strain 0.1" and [run["label"] for run in found["runs"]] == ["strain 0.1, seed 1", "strain 0.1, seed 3", "strain 0.05, seed 1"]
 
 
 def test_laboratory(tmp_path):
@@ -280,10 +281,11 @@ def test_command(tmp_path, capsys, monkeypatch):
 
 def test_aStudyIsOpenedByItsPlan(tmp_path):
 	makeTest(tmp_path / "stages" / "shear-1" / "test")
-	plan = {"runs": [{"name": "001", "stages": {"shear": "shear-1"}}, {"name": "002", "stages": {"shear": "shear-2"}}]}
+	values = {"set": "dense", "consolidation.pressure": 50000.0}
+	plan = {"runs": [{"name": "001", "values": values, "seed": 2, "stages": {"shear": "shear-1"}}, {"name": "002", "stages": {"shear": "shear-2"}}]}
 	(tmp_path / "plan.json").write_text(json.dumps(plan))
 	first, second = page.gather([tmp_path])["runs"]
-	assert first["name"] == "001" and not first["problems"] and second["state"] == "no rows yet" and second["problems"]
+	assert first["name"] == "001" and first["label"] == "set dense, pressure 50000, seed 2" and not first["problems"] and second["state"] == "no rows yet" and second["problems"]
 	(tmp_path / "plan.json").write_text("{")
 	with pytest.raises(ReportError, match="plan.json cannot be read"):
 		runs.gather([tmp_path])
