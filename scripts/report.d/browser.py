@@ -19,9 +19,8 @@ _OPTIONS = (
 	# drawn by the processor, as on a machine without a graphics card
 	"--use-angle=swiftshader",
 	"--enable-unsafe-swiftshader",
-	# of what is drawn so only the scenes: all else is slow by way of it, and waits behind it
-	"--disable-gpu-rasterization",
-	"--disable-accelerated-2d-canvas",
+	# only scenes are drawn so, as a browser without a card does it: by way of it pages are slow, and an answer waits for all that is to be drawn before
+	"--disable-gpu-compositing",
 	# a browser in a container has no sandbox of its own, and little shared memory; it opens our own files only
 	"--no-sandbox",
 	"--disable-gpu-sandbox",
