@@ -4,6 +4,7 @@
 ``scripts/test`` gives the browser by HEXMEMBRANE_BROWSER. With HEXMEMBRANE_LOOK, a folder, pages and screenshots stay there, and speeds are measured.
 """
 
+import contextlib
 import json
 import os
 import pathlib
@@ -23,6 +24,9 @@ from browser import Browser, BrowserError, Page  # noqa: E402
 
 PROGRAM = os.environ.get("HEXMEMBRANE_BROWSER")
 LOOK = os.environ.get("HEXMEMBRANE_LOOK")
+#: Of a page: its frames, the slider's place; what the reader has chosen: colour of the grains, range of the curves, place on the page, the camera's.
+_VIEW = """[report.state.strains.length, document.getElementById("at").textContent, report.state.parts[0].options.grains, report.curves.view().domain, Math.round(scrollY),
+	report.state.parts[0].camera.position.toArray()]"""
 
 
 @pytest.fixture(scope="module")
@@ -171,3 +175,25 @@ def test_aBrowserThatDoesNotAnswerIsAnError(tmp_path, does, told):
 			with pytest.raises(BrowserError, match=told):
 				one.ask("Page.enable", filler="a" * 2**18)
 	assert time.monotonic() - start < 10
+
+
+def test_aPageThatRenewsItselfIsAsTheReaderLeftIt(browser, tmp_path):
+	"""Zoom, curves, view and colours of the specimen, place on the page; the slider goes on with the test; also when the page does not renew itself any more."""
+	folder, path = makeTest(tmp_path / "a", last=0.05, frames=2), tmp_path / "page.html"
+	page.write(path, page.gather([folder], watch=1))
+	seen = Page(browser, path.as_uri(), look.SIZES["narrow"])
+	assert seen.run("document.getElementById('about').textContent").endswith("renews itself every 1 s")
+	makeTest(tmp_path / "later" / "a")
+	page.write(path, page.gather([tmp_path / "later" / "a"]))
+	seen.run("scrollTo(0, 700), document.querySelector('.panels svg').dispatchEvent(new KeyboardEvent('keydown', { key: '+' }))")
+	seen.run("(async () => { const one = report.state.parts[0]; await one.ready; one.options.grains = 'settlement'; one.key(new KeyboardEvent('keydown', { key: '-' })); })()")
+	before, end = seen.run(_VIEW), time.monotonic() + 20
+	assert before[:3] == [2, "5 %", "settlement"]
+	renewed = False
+	while not renewed and time.monotonic() < end:
+		time.sleep(0.1)
+		with contextlib.suppress(BrowserError):  # the page is being loaded
+			renewed = seen.run("report.content.watch === null && report.ready.then(() => report.state.parts[0].ready).then(() => true)")
+	after = seen.run(_VIEW)
+	assert after[:2] == [3, "10 %"] and after[2:5] == before[2:5] and after[5] == pytest.approx(before[5]) and seen.errors() == []
+	seen.close()
