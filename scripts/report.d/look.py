@@ -7,7 +7,10 @@ import sys
 from browser import Browser, BrowserError, Page
 
 SIZES = {"wide": (1440, 900), "middle": (820, 1100), "narrow": (390, 844)}
-_RIGHT, _LEFT = 39, 37
+THEMES = ("light", "dark")
+_LEFT, _RIGHT, _DOWN = 37, 39, 40
+#: Least share of a scene's picture that is drawn, and how many colours it has at least.
+_DRAWN, _COLOURS = 0.01, 10
 #: Least contrast of text with what is behind it (WCAG 2, AA). Curves have it too: the numbers at their ends have their colours.
 _TEXT = 4.5
 #: Least contrasts of text against the page and the card, and of curves against the card.
@@ -31,6 +34,25 @@ _SPEED = """(async () => {
 	await scene.measure(8);
 	return [scene.stage.clientWidth, scene.stage.clientHeight, await scene.measure(60)];
 })()"""
+#: Share of the scene's picture that is drawn, and the number of its colours; null without a scene.
+_PICTURE = """(() => {
+	const scene = report.state.parts[0];
+	if (!scene?.renderer) return null;
+	scene.render();
+	const gl = scene.renderer.getContext(), { width, height } = scene.renderer.domElement, pixels = new Uint32Array(width * height);
+	gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(pixels.buffer));
+	return [pixels.filter((one) => one >>> 24).length / pixels.length, new Set(pixels).size];
+})()"""
+#: The first figure of curves that is shown, brought into the window, and where its middle is; null without one.
+_FIGURE = """(() => {
+	const figure = (window.looked = document.querySelector(".panels figure:not([hidden]) svg"));
+	if (!figure) return null;
+	figure.scrollIntoView({ block: "center", behavior: "instant" });
+	const { left, top, width, height } = figure.getBoundingClientRect();
+	return [left, top, width, height];
+})()"""
+_READOUT = "looked.parentElement.querySelector('.readout').textContent"
+_RANGE = "[...looked.querySelector('.axis').querySelectorAll('.tick text')].map((one) => one.textContent).join(' ')"
 #: What is told of force chains after their box is clicked, what is shown of the grains, and whether the picture has the tubes.
 _CHAINS = """(async () => {
 	const scene = report.state.parts[0];
@@ -46,18 +68,52 @@ def _moves(page, wrong):
 	"""Slider and list of tests by keys."""
 	if page.run("!document.getElementById('slide').hidden"):
 		page.run("document.getElementById('strain').focus()")
-		before = page.run("document.getElementById('at').textContent")
+		page.run("window.before = document.getElementById('at').textContent")
 		page.press("ArrowLeft", _LEFT)
-		page.run("new Promise((done) => setTimeout(done, 500))")
-		if page.run("document.getElementById('at').textContent") == before:
+		if not page.until("document.getElementById('at').textContent !== before"):
 			wrong.append("the slider does not move by keys")
 	if page.run("report.content.runs.length") > 1:
 		page.run("document.getElementById('run').focus()")
-		page.press("ArrowDown", 40)
-		page.run("new Promise((done) => setTimeout(done, 1500))")
-		name = page.run("report.content.runs[1].name")
-		if page.run("report.state.run.name") != name:
-			wrong.append(f"the list of tests does not pick {name}")
+		page.press("ArrowDown", _DOWN)
+		if not page.until("report.state.run === report.content.runs[1]"):
+			wrong.append(f"the list of tests does not pick {page.run('report.content.runs[1].name')}")
+		page.run("Promise.all(report.state.parts.map((part) => part.ready))")
+
+
+def _zooms(page, wrong):
+	"""Values under the cursor and zoom of the curves, by mouse and by keys."""
+	if (place := page.run(_FIGURE)) is None:
+		return
+	left, top, width, height = place
+	page.point(left + 0.4 * width, top + 0.4 * height)
+	if not page.until(f"{_READOUT}.startsWith('at ')"):
+		wrong.append("there are no values under the cursor")
+	whole = page.run(_RANGE)
+	page.drag(*((left + share * width, top + 0.5 * height) for share in (0.3, 0.35, 0.5)))
+	if not page.until(f"{_RANGE} !== {whole!r}"):
+		wrong.append("curves do not zoom by mouse")
+	page.run("looked.focus()")
+	page.press("0", ord("0"))
+	if not page.until(f"{_RANGE} === {whole!r}"):
+		wrong.append("curves do not show all by a key")
+	page.run(f"window.before = {_READOUT}")
+	page.press("ArrowRight", _RIGHT)
+	if not page.until(f"{_READOUT} !== before"):
+		wrong.append("the cursor of curves does not move by keys")
+	page.press("+")
+	if not page.until(f"{_RANGE} !== {whole!r}"):
+		wrong.append("curves do not zoom by keys")
+	page.press("0", ord("0"))
+
+
+def _turns(page, wrong):
+	"""The scene by keys."""
+	if not page.run("report.state.parts[0]?.stage !== undefined"):
+		return
+	page.run("(report.state.parts[0].stage.focus(), window.before = report.state.parts[0].camera.position.x)")
+	page.press("ArrowRight", _RIGHT)
+	if not page.until("report.state.parts[0].camera.position.x !== before"):
+		wrong.append("the scene does not turn by keys")
 
 
 def _figures(page, wrong):
@@ -81,7 +137,6 @@ def _speeds(page, name):
 	grains = page.run("report.state.parts[0].data.grains.position.shape[1]")
 	for size in SIZES.values():
 		page.resize(*size)
-		page.run("new Promise((done) => setTimeout(done, 400))")
 		width, height, speed = page.run(_SPEED)
 		print(f"{name}: {grains} grains at {speed:.0f} pictures a second, {width} x {height} pixels")
 	page.resize(*SIZES["wide"])
@@ -90,30 +145,41 @@ def _speeds(page, name):
 		page.run(_CHAINS)
 
 
-def look(browser, path, out):
-	"""What is wrong with a page, a list."""
+def _sees(page, theme, sizes, shot, wrong):
+	"""Screenshots at the sizes and with force chains, what is wider than the window, contrasts, whether the scene is drawn. shot: path of a screenshot by what it has."""
+	for label, size in sizes.items():
+		page.resize(*size)
+		page.picture(shot(label))
+		if wider := page.run(_WIDER):
+			wrong.append(f"{label}: {wider} are wider than the window")
+		if (drawn := page.run(_PICTURE)) is not None and (drawn[0] < _DRAWN or drawn[1] < _COLOURS):
+			wrong.append(f"{label}: of the scene {100 * drawn[0]:.2g} % are drawn, in {drawn[1]} colours")
+	text, curve = page.run(_CONTRASTS)
+	if min(text, curve) < _TEXT:
+		wrong.append(f"{theme}: contrast of text {text:.2f}, of curves {curve:.2f}")
+	page.resize(*SIZES["wide"])
+	if (chains := page.run(_CHAINS)) is not None:
+		if " carry " not in chains[0] or chains[1] != "none" or not chains[2]:
+			wrong.append(f"force chains tell {chains}")
+		page.picture(shot("chains"), ".stage")
+		page.run(_CHAINS)
+
+
+def look(browser, path, out, themes=THEMES, sizes=SIZES, speeds=True):
+	"""What is wrong with a page, a list.
+
+	:param out: folder of screenshots and print. :param speeds: whether the scene's pictures a second are measured and printed.
+	"""
 	wrong, name = [], path.stem
-	for theme in ("light", "dark"):
+	for theme in themes:
 		page = Page(browser, path.resolve().as_uri(), SIZES["wide"], theme == "dark")
-		for label, size in SIZES.items():
-			page.resize(*size)
-			page.run("new Promise((done) => setTimeout(done, 400))")
-			page.picture(out / f"{name}-{label}-{theme}.png")
-			if wider := page.run(_WIDER):
-				wrong.append(f"{label}: {wider} are wider than the window")
-		text, curve = page.run(_CONTRASTS)
-		if min(text, curve) < _TEXT:
-			wrong.append(f"{theme}: contrast of text {text:.2f}, of curves {curve:.2f}")
-		if (chains := page.run(_CHAINS)) is not None:
-			if " carry " not in chains[0] or chains[1] != "none" or not chains[2]:
-				wrong.append(f"force chains tell {chains}")
-			page.picture(out / f"{name}-chains-{theme}.png")
-			page.run(_CHAINS)
-		if theme == "light":
-			page.resize(*SIZES["wide"])
+		_sees(page, theme, sizes, lambda what: out / f"{name}-{what}-{theme}.png", wrong)
+		if theme == themes[0]:
+			_zooms(page, wrong)
+			_turns(page, wrong)
 			_moves(page, wrong)
 			print(f"{name}: {_figures(page, wrong)} files of figures")
-			if page.run("report.state.parts[0]?.measure !== undefined"):
+			if speeds and page.run("report.state.parts[0]?.measure !== undefined"):
 				_speeds(page, name)
 			if page.run("window.harmed !== undefined"):
 				wrong.append("a text of a test was run")

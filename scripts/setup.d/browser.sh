@@ -1,12 +1,14 @@
 # shellcheck shell=bash
-# Chromium without a window, for the one command that looks at reports as a reader does (scripts/report.d/look). On Debian 13 it is the system's; for the
+# Chromium without a window, for what looks at reports as a reader does (scripts/test, scripts/report.d/look). On Debian 13 it is the system's; for the
 # private root it lies in a folder of its own beside it.
 
 # chooseBrowser: sets browser, the program to run beside YADE. Needs chooseHost.
-# shellcheck disable=SC2034 # for scripts/report.d/look
+# shellcheck disable=SC2034 # for scripts/test and scripts/report.d/look
 chooseBrowser() {
 	if [[ $host == native ]]; then
-		browser=$(command -v chromium-headless-shell || command -v chromium) || die "there is no chromium in PATH: reports are looked at with Debian's." \
+		if ((EUID == 0)) && [[ -z $(nativeBrowser) ]]; then installByApt chromium-headless-shell; fi
+		browser=$(nativeBrowser)
+		[[ $browser ]] || die "there is no chromium in PATH: reports are looked at with Debian's." \
 			"fix: apt-get install --no-install-recommends chromium-headless-shell"
 	else
 		local folder
@@ -15,6 +17,8 @@ chooseBrowser() {
 		browser=$folder/chromium
 	fi
 }
+
+nativeBrowser() { command -v chromium-headless-shell || command -v chromium || true; }
 
 # setUpBrowser FOLDER: makes it.
 setUpBrowser() {

@@ -16,9 +16,14 @@ installPackages() {
 	local missing
 	mapfile -t missing < <(missingPackages)
 	((${#missing[@]})) || return 0
+	installByApt "${missing[@]}"
+}
+
+# installByApt PACKAGE...: without what they recommend; only root may.
+installByApt() {
 	lock 9 root
-	say "installing Debian packages: ${missing[*]}"
-	{ apt-get -q update && DEBIAN_FRONTEND=noninteractive apt-get -q -y --no-install-recommends install "${missing[@]}"; } >&2 ||
+	say "installing Debian packages: $*"
+	{ apt-get -q update && DEBIAN_FRONTEND=noninteractive apt-get -q -y --no-install-recommends install "$@"; } >&2 ||
 		die "Debian's packages could not be installed (see above)." "fix: check the network and /etc/apt/sources.list, then run this again"
 	exec 9>&-
 }

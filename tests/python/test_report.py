@@ -12,52 +12,11 @@ import zlib
 import numpy as np
 import pytest
 import yaml
-from hexmembrane.output import records, vtk
+from hexmembrane.output import vtk
 from hexmembrane.report import command, encode, libraries, page, profiles, runs, spatial, terminal, verdict
 from hexmembrane.report.runs import ReportError
+from madeUpTest import HARM, makeTest
 from tinyTest import configure
-
-HARM = "</script><script>harmed=1</script><img src=x onerror=harmed=1> & \"'"
-CONFIG = {
-	"boundary": "membrane",
-	"specimen": {"seed": 1, "grains": 30, "gradation": "/somewhere/sand.csv"},
-	"consolidation": {"pressure": 1e5, "unbalanced": 1e-3, "tolerance": None},
-	"shear": {"strain": 0.1, "pressureTolerance": 0.05},
-	"made": {"commit": "0" * 40, "yade": "2025.2.0", "budget": {"budget of a run": {"peak q": 0.1}, "scatter of packings": {"peak q": 0.02}}},
-}
-
-
-def row(stage, strain, **more):
-	values = {column.name: 1.0 for column in records.COLUMNS}
-	values.update(stage=stage, step=int(1e5 * strain) + 1, time=strain, axial_strain=strain, q=2e5 * (1 - math.exp(-50 * strain)), p=1.5e5, sigma3_target=1e5)
-	values.update(soil_axial_middle=1.001e5, soil_radial_middle=0.999e5, inertial_number=5e-4, sigma3_distance=-0.01, energy_error=-1e-4, bonds_broken=0, unbalanced=5e-4)
-	return {**values, **more}
-
-
-def makeTest(folder, rows=11, frames=3, grains=30, seed=1, title="a test", last=0.1, jitter=0.0, sheet=12, **columns):
-	"""A test's folder with rows to 10 % strain and frames, as a run leaves them."""
-	(folder / "vtk").mkdir(parents=True)
-	config = {**CONFIG, "title": title, "specimen": {**CONFIG["specimen"], "seed": seed}}
-	(folder / "config.yaml").write_text(yaml.safe_dump(config))
-	with records.Records(folder / "records.csv") as table:
-		table.append(row("consolidation", 0.0))
-		for strain in np.linspace(0, last, rows):
-			table.append(row("shear", float(strain), **columns))
-	random = np.random.default_rng(seed)
-	grainsAt, sheetAt = random.uniform(-0.02, 0.02, (grains, 3)), random.uniform(-0.02, 0.02, (sheet, 3))
-	triangles = np.arange(sheet).reshape(-1, 3)
-	for k in range(frames):
-		moved = np.tile([0, 0, -1e-3 * k], (grains, 1)) + jitter * k * random.normal(size=(grains, 3))
-		ofGrains = {"radius": np.full(grains, 1e-3), "displacement": moved, "coordination": np.arange(grains) % 7}
-		vtk.write(folder / "vtk" / f"grains-{k:04d}.vtp", grainsAt + moved, pointData=ofGrains)
-		ofSheet = {"group": np.full(sheet, 3), "pressure": np.full(sheet, 1e5), "normal_displacement": np.full(sheet, 1e-3 * k)}
-		vtk.write(folder / "vtk" / f"membrane-{k:04d}.vtp", sheetAt + jitter * random.normal(size=(sheet, 3)), triangles, ofSheet, {"hoop_tension": np.arange(sheet / 3)})
-		ends = grainsAt[random.integers(0, grains, (3 * grains, 2))].astype(np.float32)
-		forces = random.exponential(size=3 * grains).astype(np.float32)
-		vtk.write(folder / "vtk" / f"contacts-{k:04d}.vtp", ends, np.arange(6 * grains).reshape(-1, 2), {"normal_force": np.repeat(forces, 2)})
-	for name in ("grains", "membrane", "contacts"):
-		vtk.series(folder / "vtk" / f"{name}.pvd", [(0.05 * k, f"{name}-{k:04d}.vtp") for k in range(frames)])
-	return folder
 
 
 def decoded(encoded):
@@ -164,6 +123,7 @@ def test_seedsAreOneMean(tmp_path):
 	each = 2 * (1 - math.exp(-5)) * np.array([1, 1 / 3])
 	assert ratio == pytest.approx(each.mean(), rel=1e-5) and half == pytest.approx(12.7062 * each.std(ddof=1) / math.sqrt(2), rel=1e-4)
 	assert {one["key"] for one in found["differences"]} == {"specimen.seed", "shear.strain"}
+	assert group["name"] == "mean of 2: strain 0.1" and [run["label"] for run in found["runs"]] == ["strain 0.1, seed 1", "strain 0.1, seed 3", "strain 0.05, seed 1"]
 
 
 def test_laboratory(tmp_path):
@@ -321,10 +281,11 @@ def test_command(tmp_path, capsys, monkeypatch):
 
 def test_aStudyIsOpenedByItsPlan(tmp_path):
 	makeTest(tmp_path / "stages" / "shear-1" / "test")
-	plan = {"runs": [{"name": "001", "stages": {"shear": "shear-1"}}, {"name": "002", "stages": {"shear": "shear-2"}}]}
+	values = {"set": "dense", "consolidation.pressure": 50000.0}
+	plan = {"runs": [{"name": "001", "values": values, "seed": 2, "stages": {"shear": "shear-1"}}, {"name": "002", "stages": {"shear": "shear-2"}}]}
 	(tmp_path / "plan.json").write_text(json.dumps(plan))
 	first, second = page.gather([tmp_path])["runs"]
-	assert first["name"] == "001" and not first["problems"] and second["state"] == "no rows yet" and second["problems"]
+	assert first["name"] == "001" and first["label"] == "set dense, pressure 50000, seed 2" and not first["problems"] and second["state"] == "no rows yet" and second["problems"]
 	(tmp_path / "plan.json").write_text("{")
 	with pytest.raises(ReportError, match="plan.json cannot be read"):
 		runs.gather([tmp_path])

@@ -4,6 +4,7 @@
 The functions of scripts/setup.d are called as the scripts call them, on made-up folders.
 """
 
+import os
 import pathlib
 import shutil
 import subprocess
@@ -173,3 +174,12 @@ def test_threadsBeyondTheProcessors(tmp_path, threads):
 	result = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60)
 	assert result.returncode == 1 and "threads = %s: is more than four a processor." % threads in result.stderr and "fix: " in result.stderr
 	assert not (tmp_path / "cache").exists()
+
+
+def test_browserOfDebian13(call, tmp_path):
+	"""Installed for root where there is none, else told of; one in PATH is taken."""
+	code, said, errors = call('host=native; installByApt() { echo "installs $*"; }; nativeBrowser() { :; }; chooseBrowser')
+	assert code == 1 and "there is no chromium in PATH" in errors and "fix: apt-get install" in errors
+	assert said == ("installs chromium-headless-shell\n" if os.geteuid() == 0 else "")
+	(tmp_path / "bin" / "chromium").symlink_to("/bin/true")
+	assert call('host=native; chooseBrowser; echo "$browser"')[:2] == (0, f"{tmp_path}/bin/chromium\n")

@@ -58,6 +58,8 @@ _OVER = {
 }
 #: Keys that tests with other seeds may have other values of: what they are called, where their files are, what they write.
 _FREE_SECTIONS, _FREE = ("output",), {"title": None, "specimen": ("seed", "packing"), "numerics": ("threads",)}
+#: What a mean is not told by.
+SEED = ("specimen.seed",)
 #: Strains at which a mean is taken.
 _POINTS = 201
 
@@ -122,7 +124,7 @@ def ofGroup(group):
 		if all(one is not None for one in values):
 			each = np.array([np.interp(x, table[column], one) for table, one in zip(tables_, values)])
 			content[panel.name], content[f"{panel.name} half width"] = numbers(each.mean(axis=0)), numbers(halfWidth(each))
-	return {"name": f"mean of {len(group)}: {group[0].title}", "members": [run.name for run in group], "shear": content}
+	return {"name": f"mean of {len(group)}: {group[0].label(SEED) or group[0].title}", "members": [run.name for run in group], "shear": content}
 
 
 def laboratory(curve, pressure):

@@ -42,6 +42,7 @@ def _content(run, group, every, labs):
 	return {
 		"name": run.name,
 		"title": run.title,
+		"label": run.label(),
 		"folder": str(run.folder),
 		"state": run.state(),
 		"curves": curves.ofRun(run),

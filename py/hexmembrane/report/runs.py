@@ -18,8 +18,16 @@ from hexmembrane.output import records, tables
 _STUDY, _STAGES, _TEST = "plan.json", "stages", "test"
 #: The strain of a test that has ended is its last row's, to this share.
 _ENDED = 1e-3
+#: How the state of a test ends that is not at its end.
+_HALF = ": not at its end"
 #: Strains below this are told as 0.
 _SETTLING = 1e-6
+#: Keys that differ without that they tell tests apart: where files are, what is written, what is compared with.
+_QUIET = ("output.", "lab.", "specimen.packing", "specimen.gradation", "specimen.balls", "numerics.threads")
+#: What is told of a key that a configuration does not have.
+_ABSENT = "not given"
+#: A test is told by so many keys at most; with more its title says it better.
+_TELLING = 4
 
 
 class ReportError(ValueError):
@@ -31,12 +39,18 @@ def _told(strain):
 	return 0.0 if abs(strain) < _SETTLING else strain
 
 
+def _short(value):
+	"""A value of a key as a reader wants it."""
+	return f"{value:g}" if isinstance(value, float) else str(value)
+
+
 @dataclasses.dataclass
 class Run:
 	"""A test.
 
 	:param folder: of the test. :param name: in the report. :param config: its keys, nested. :param text: of its config.yaml.
 	:param made: what made it, by name. :param table: of its records, {} without. :param problems: what is missing or damaged, sentences.
+	:param values: keys that tell it from the others of a report, {} where there are none or too many.
 	"""
 
 	folder: pathlib.Path
@@ -46,10 +60,15 @@ class Run:
 	made: dict = dataclasses.field(default_factory=dict)
 	table: dict = dataclasses.field(default_factory=dict)
 	problems: list = dataclasses.field(default_factory=list)
+	values: dict = dataclasses.field(default_factory=dict)
 
 	@property
 	def title(self):
 		return str(self.config.get("title") or self.name)
+
+	def label(self, but=()):
+		"""What tells it from the others, without the keys in ``but``: 'friction 0.3, seed 1'."""
+		return ", ".join(f"{key.rsplit('.', 1)[-1]} {_short(value)}" for key, value in self.values.items() if key not in but)
 
 	def key(self, section, name, default=None):
 		"""A key of the configuration."""
@@ -96,7 +115,7 @@ class Run:
 			return "consolidation, no shear yet" if self.rows("consolidation") else "no rows yet"
 		strain = _told(shear["axial_strain"][-1])
 		ended = isinstance(wanted, (int, float)) and strain >= (1 - _ENDED) * wanted
-		return f"sheared to {100 * strain:.4g} %" + ("" if ended or wanted is None else f" of {100 * wanted:.4g} %: not at its end")
+		return f"sheared to {100 * strain:.4g} %" + ("" if ended or wanted is None else f" of {100 * wanted:.4g} %{_HALF}")
 
 	def _stateOfStages(self):
 		if not self.table:
@@ -107,14 +126,14 @@ class Run:
 			labels = [stage.label for stage in planned]
 			begun = f"stage {now}, {labels.index(now) + 1} of {len(labels)}, at {100 * strain:.4g} %"
 		except (ConfigError, ValueError):
-			return f"stage {now} of a list that cannot be read: not at its end"
+			return f"stage {now} of a list that cannot be read{_HALF}"
 		ended = now == labels[-1] and (self.folder / f"{planned[-1].state}.yade.gz").is_file()
-		return f"through {len(labels)} stages, at {100 * strain:.4g} %" if ended else f"{begun}: not at its end"
+		return f"through {len(labels)} stages, at {100 * strain:.4g} %" if ended else begun + _HALF
 
 	@property
 	def ended(self):
 		"""Whether its shear, or its last stage, has come to its end."""
-		return self.state().startswith(("sheared", "through")) and "not at its end" not in self.state()
+		return self.state().startswith(("sheared", "through")) and not self.state().endswith(_HALF)
 
 
 def read(folder, name=None):
@@ -131,7 +150,7 @@ def read(folder, name=None):
 		run.problems.append(f"records.csv cannot be read: {error}")
 	run.problems += damage
 	if run.table and not run.ended:
-		run.problems.append(f"The test is not at its end: {run.state()}.")
+		run.problems.append(f"The test is not at its end: {run.state().removesuffix(_HALF)}.")
 	return run
 
 
@@ -190,20 +209,31 @@ def gather(folders):
 			found.append(read(folder))
 		else:
 			raise ReportError(f"DIR = '{folder}': there is no such folder; fix: give the output folder of scripts/run or scripts/sweep")
-	return _distinct(found)
+	found = _distinct(found)
+	_label(found)
+	return found
 
 
 def _study(folder):
 	try:
 		plan = json.loads((folder / _STUDY).read_text(encoding="utf-8"))
 		places = [(run["name"], folder / _STAGES / run["stages"]["shear"] / _TEST) for run in plan["runs"]]
+		values = [{**run.get("values", {}), **({"specimen.seed": run["seed"]} if "seed" in run else {})} for run in plan["runs"]]
 	except (OSError, ValueError, KeyError, TypeError) as error:
 		raise ReportError(f"DIR = '{folder}': its plan.json cannot be read ({error!r}); fix: plan the study again with scripts/sweep --dry-run") from None
-	return [read(place, name) for name, place in places]
+	found = [read(place, name) for name, place in places]
+	for run, told in zip(found, values):
+		run.values = told
+	return found
 
 
 def differences(found):
 	"""Keys in which tests differ, their titles left out: {"key", "values"}, texts."""
+	return [{"key": key, "values": list(map(str, values))} for key, values in _differing(found)]
+
+
+def _differing(found):
+	"""(key, its values) of each key in which the configurations differ."""
 	flat = [{} for _ in found]
 
 	def visit(values, path, into):
@@ -212,13 +242,22 @@ def differences(found):
 			if isinstance(value, dict):
 				visit(value, at, into)
 			else:
-				into[at] = str(value)
+				into[at] = value
 
 	for run, into in zip(found, flat):
 		visit({name: value for name, value in run.config.items() if name != "title"}, "", into)
 	keys = list(dict.fromkeys(key for one in flat for key in one))
-	rows = [{"key": key, "values": [one.get(key, "not given") for one in flat]} for key in keys]
-	return [row for row in rows if len(set(row["values"])) > 1]
+	rows = [(key, [one.get(key, _ABSENT) for one in flat]) for key in keys]
+	return [(key, values) for key, values in rows if len(set(map(str, values))) > 1]
+
+
+def _label(found):
+	"""Sets what tells each test from the others, unless a study has said so."""
+	own = [run for run in found if not run.values]
+	telling = [(key, values) for key, values in _differing(own) if not key.startswith(_QUIET)]
+	if len(telling) <= _TELLING:
+		for k, run in enumerate(own):
+			run.values = {key: values[k] for key, values in telling if values[k] != _ABSENT}
 
 
 def _distinct(found):

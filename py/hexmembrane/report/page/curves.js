@@ -11,6 +11,8 @@
 		MOST_TAGS = 8,
 		TAG = 11,
 		DECADES = 4,
+		BEYOND = 0.5, // share of the range of a figure's curves that bands have above and below them: those of two tests are wide
+		OUTSIDE = 0.02, // share of a logarithmic figure's lowest values that may lie outside: a start from rest is near 0
 		MOST_PASSES = 4;
 	const DASHES = ["none", "7 3", "2 2.5", "9 3 2 3"];
 	const { content } = report;
@@ -20,7 +22,7 @@
 	// What can be drawn: means of groups first, then tests, then a laboratory's.
 	const series = [
 		...content.groups.map((one) => ({ name: one.name, kind: "mean", stages: { shear: one.shear } })),
-		...content.runs.map((one) => ({ name: one.name, kind: "test", stages: one.curves, title: one.title })),
+		...content.runs.map((one) => ({ name: one.name, kind: "test", stages: one.curves, label: report.label(one) })),
 		...content.laboratories.map((one) => ({ name: `laboratory: ${one.name}`, kind: "laboratory", stages: { shear: one.shear } })),
 	];
 	const onlyMeans = content.groups.length > 0 && content.runs.length > MANY;
@@ -56,7 +58,8 @@
 	};
 
 	function extent(shown, panel, [from, to]) {
-		const values = [];
+		const values = [],
+			ends = [];
 		for (const one of shown) {
 			const data = one.stages[state.stage],
 				half = data[`${panel.name} half width`];
@@ -64,14 +67,15 @@
 				const y = data[panel.name][k];
 				if (x < from || x > to || y === null || (panel.log && y <= 0)) return;
 				values.push(y);
-				if (half?.[k]) values.push(y - half[k], y + half[k]);
+				if (half?.[k]) ends.push(y - half[k], y + half[k]);
 			});
 		}
-		const [low, high] = d3.extent(panel.log ? values.filter((y) => y > 0) : values);
+		const [low, high] = panel.log ? [d3.quantile(values.sort(d3.ascending), OUTSIDE), d3.max(values)] : d3.extent(values);
 		if (low === undefined) return panel.log ? [1e-6, 1] : [0, 1];
 		if (panel.log) return [Math.max(low, high * 10 ** -DECADES) / 1.3, high * 1.3];
-		const edge = (high - low) * 0.06 || Math.abs(high) * 0.02 || 1;
-		return [low - edge, high + edge];
+		const edge = (high - low) * 0.06 || Math.abs(high) * 0.02 || 1,
+			most = (high - low) * BEYOND;
+		return [Math.max(low - most, d3.min([low, ...ends])) - edge, Math.min(high + most, d3.max([high, ...ends])) + edge];
 	}
 
 	// Moves tags apart where curves end beside each other.
@@ -361,7 +365,7 @@
 						{ class: "legend" },
 						element("legend", {}, "curves "),
 						all,
-						...series.map((one, k) => element("label", {}, boxes[k], sample(one), element("strong", {}, one.tag), ` ${one.name}`)),
+						...series.map((one, k) => element("label", {}, boxes[k], sample(one), element("strong", {}, one.tag), ` ${one.name}${one.label ? `: ${one.label}` : ""}`)),
 					),
 				);
 			}

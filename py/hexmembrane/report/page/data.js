@@ -2,7 +2,8 @@
 "use strict";
 const report = { content: JSON.parse(document.getElementById("data").textContent) };
 {
-	const NAN = 65535;
+	const NAN = 65535,
+		SETTLING = 1e-6; // strains below this are told as 0
 
 	async function bytes(text) {
 		const packed = Uint8Array.from(atob(text), (one) => one.charCodeAt(0));
@@ -33,6 +34,18 @@ const report = { content: JSON.parse(document.getElementById("data").textContent
 	// A list of frames, each a Float32Array; whole numbers: one Uint32Array. Decoded once.
 	report.array = (encoded) => (encoded.decoded ??= decode(encoded));
 
+	// A fault of the page itself is told on the page too.
+	const failed = (reason) => {
+		const section = document.getElementById("problems");
+		section.hidden = false;
+		section.querySelector("ul").append(report.element("li", {}, `This page could not draw a part of it: ${reason?.message ?? reason}`));
+	};
+	addEventListener("error", (event) => failed(event.error ?? event.message));
+	addEventListener("unhandledrejection", (event) => failed(event.reason));
+
+	// What tells a test from the others, its title where nothing else does.
+	report.label = (run) => run.label || (run.title === run.name ? "" : run.title);
+
 	// Index of the value that is nearest; of equally near ones the first.
 	report.nearest = (values, wanted) =>
 		values.reduce((best, value, k) => (Math.abs(value - wanted) < Math.abs(values[best] - wanted) ? k : best), 0);
@@ -46,7 +59,7 @@ const report = { content: JSON.parse(document.getElementById("data").textContent
 	// Where the slider is, in words. Of a test with a list of stages it goes by time [s], of another by strain.
 	const rowAt = (run, at) => report.nearest(run.stages.time, at);
 	report.told = (run, at) => {
-		if (!run.stages) return `${report.number(100 * at, 3)} %`;
+		if (!run.stages) return `${report.number(Math.abs(at) < SETTLING ? 0 : 100 * at, 3)} %`;
 		const k = rowAt(run, at);
 		return `${report.number(100 * run.stages.strain[k], 3)} % (${run.stages.stage[k]}, ${report.number(1e3 * (at - run.stages.time[0]), 4)} ms)`;
 	};

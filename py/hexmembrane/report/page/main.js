@@ -60,7 +60,7 @@
 			...(run.profile ? [new report.Profile(right, run)] : []),
 		];
 		if (!run.scene) left.append(element("p", {}, "There are no frames (output.vtkEvery) to draw grains and boundary from."));
-		if (run.scene && !run.clouds) right.append(element("p", {}, "There are no clouds: the test kept no fields of its grains (measure.strains)."));
+		if (run.scene && !run.clouds) right.append(element("p", {}, "There are no clouds: fields.h5 (measure.strains) is not there or cannot be read."));
 		inside.className = both ? "specimen both" : "specimen";
 		inside.replaceChildren(left, right);
 		const all = [run.scene, run.clouds, run.profile].flatMap((part) => part?.strains ?? []);
@@ -101,7 +101,7 @@
 	report.differences(find("origin"));
 	find("pick").hidden = content.runs.length < 2;
 	find("run").append(
-		...content.runs.map((run, k) => element("option", { value: k }, run.title === run.name ? run.name : `${run.name}: ${run.title}`)),
+		...content.runs.map((run, k) => element("option", { value: k }, report.label(run) ? `${run.name}: ${report.label(run)}` : run.name)),
 	);
 	find("run").addEventListener("change", (event) => pick(content.runs[event.target.value]));
 	find("strain").addEventListener("input", (event) => show(Number(event.target.value), true));

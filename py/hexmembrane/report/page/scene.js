@@ -156,7 +156,7 @@
 			const carried = options.chains ? await this.chains.fill(frame, options.share, CHAINS) : "";
 			if (wanted !== this.wanted) return; // another was asked for meanwhile
 			this.told.textContent = carried;
-			this.values = values;
+			Object.assign(this, { values, sheetValues });
 			this.place(this.spheres.position.array, this.positions[frame]);
 			this.paint(this.spheres.tint.array, values, grains);
 			this.spheres.object.visible = options.grains !== "none";
@@ -343,23 +343,24 @@
 			return text;
 		}
 
-		// Of the contacts where they are drawn without the grains, else of the grains.
+		// Of the contacts where they are drawn without the grains, else of the grains and the boundary that is drawn.
 		csv() {
 			if (this.options.chains && this.options.grains === "none") return this.chains.csv();
-			const position = this.positions[this.frame],
-				grains = this.quantity("grains"),
-				header = ["x [m]", "y [m]", "z [m]", "radius [m]"];
-			if (grains) header.push(grains.label + (grains.unit ? ` [${grains.unit}]` : ""));
-			return report.csv(
-				header,
-				Array.from(this.radii, (radius, k) => [
-					position[3 * k],
-					position[3 * k + 1],
-					position[3 * k + 2],
-					radius,
-					...(grains ? [this.values[k]] : []),
+			const { frame, options } = this;
+			const bodies = [{ who: "grain", at: this.positions[frame], radii: this.radii, quantity: this.quantity("grains"), values: this.values }];
+			if (this.sheet && options.sheet !== "none")
+				bodies.push({ who: "boundary", at: this.sheetPositions[frame], quantity: this.quantity("boundary"), values: this.sheetValues });
+			const coloured = bodies.filter((one) => one.quantity);
+			const rows = bodies.flatMap((one) =>
+				Array.from({ length: one.at.length / 3 }, (_, k) => [
+					one.who,
+					...one.at.subarray(3 * k, 3 * k + 3),
+					one.radii?.[k],
+					...coloured.map((other) => (other === one ? one.values[k] : null)),
 				]),
 			);
+			const named = ({ who, quantity }) => `${who}: ${quantity.label}${quantity.unit ? ` [${quantity.unit}]` : ""}`;
+			return report.csv(["body", "x [m]", "y [m]", "z [m]", "radius [m]", ...coloured.map(named)], rows);
 		}
 
 		dispose() {

@@ -33,7 +33,7 @@
 			const { data, state, svg } = this,
 				grid = data.grids[state],
 				wide = 124,
-				edge = 36,
+				edge = 46,
 				gap = 26,
 				top = 46;
 			const values = await Promise.all(data.quantities.map((one) => report.array(one.states[state])));
@@ -53,7 +53,7 @@
 			data.quantities.forEach((one, k) => {
 				const x = edge + k * (wide + gap),
 					group = svg.append("g").attr("transform", `translate(${x},${top})`);
-				inLines(one.label, LETTERS)
+				inLines(one.label.replace(" [-]", ""), LETTERS)
 					.reverse()
 					.forEach((text, line) =>
 						group
@@ -125,9 +125,7 @@
 			});
 			this.caption = caption;
 			this.svg = d3.create("svg").attr("role", "img");
-			const holder = element("div", { class: "profile" });
-			holder.append(this.svg.node());
-			figure.append(holder);
+			figure.append(this.svg.node());
 		}
 
 		show(strain) {

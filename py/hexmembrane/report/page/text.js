@@ -36,7 +36,7 @@
 		section.append(
 			table(
 				["test", "peak of q", ...names],
-				content.runs.map((run) => element("tr", {}, element("th", { scope: "row" }, run.name), element("td", {}, peak(run)), ...cells(run))),
+				content.runs.map((run) => element("tr", {}, element("th", { scope: "row" }, run.name, element("div", { class: "label" }, run.label)), element("td", {}, peak(run)), ...cells(run))),
 			),
 			element("p", {}, "\u2713 pass, \u2717 fail, \u25cb not judged. The limits of the test picked above:"),
 		);
@@ -60,7 +60,7 @@
 			),
 		);
 		place.replaceChildren(
-			...(content.runs.length > 1 ? [element("h3", {}, run.name)] : []),
+			...(content.runs.length > 1 ? [element("h3", {}, run.label ? `${run.name}: ${run.label}` : run.name)] : []),
 			...(run.summary.length ? [facts] : []),
 			table(["check", "verdict", "number", "limit", "what it is"], rows),
 			...run.apart.flatMap(({ name, rows: numbers }) => [
@@ -79,7 +79,7 @@
 		const commit = run.made.commit && run.made.commit !== "None" ? run.made.commit : null;
 		const commands = [
 			...(commit ? [`git checkout ${commit.replace("-dirty", "")}`] : []),
-			`scripts/run ${quoted(`${run.folder}/config.yaml`)} --out AGAIN`,
+			`scripts/run ${quoted(`${run.folder}/config.yaml`)} --out AGAIN${run.made.threads ? ` --threads ${run.made.threads}` : ""}`,
 			"scripts/report AGAIN",
 		];
 		place.replaceChildren(
