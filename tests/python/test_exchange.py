@@ -110,6 +110,19 @@ def exported(request, tmp_path_factory):
 	return folder / "1", folder / "2", motions
 
 
+def states(O, first, second):
+	"""Tables of cemented balls in two folders, a cycle apart; leaves the scene empty."""
+	collide(O, {"kn": 2e5, "ks": 1e5}, False, True)
+	engines = list(O.engines)
+	_flatten(O)
+	O.engines = engines[:-1]
+	O.step()
+	O.engines = engines
+	for number, folder in enumerate((first, second), 1):
+		cycle(O, folder, number)
+	O.reset()
+
+
 def motion(O):
 	"""Places and velocities of the balls."""
 	return numpy.array([[*body.state.pos, *body.state.vel] for body in O.bodies if isinstance(body.shape, yade.Sphere)])

@@ -35,7 +35,7 @@ def engines(state, bodies, sign=1):
 	made, rows = [], []
 	for k, (tension, cohesion, angle, factor) in enumerate(sets.tolist()):
 		places = numpy.nonzero(which.ravel() == k)[0]
-		made.append(yade.GrainBonds(tensileStrength=tension, cohesion=cohesion, frictionAngle=math.radians(angle), momentFactor=factor, label=f"bonds{k}"))
+		made.append(yade.GrainBonds(tensileStrength=tension, cohesion=cohesion, frictionAngle=math.radians(angle), momentFactor=factor))
 		made[-1].take(*(column[places] for column in columns))
 		rows.append((ids[places].tolist(), places))
 	return made, rows
