@@ -142,6 +142,47 @@ int GrainBonds::bond(const vector<Body::id_t>& ids, Real gap)
 	return static_cast<int>(all.bonds.size() - before);
 }
 
+int GrainBonds::take(const boost::python::object& ids, const boost::python::object& radius, const boost::python::object& kn, const boost::python::object& ks,
+                     const boost::python::object& force, const boost::python::object& moment)
+{
+	requireStrengths();
+	const Scene& scene = currentScene();
+	const vector<Real> ends = numbersOf(ids, "GrainBonds.take.ids", 2);
+	const size_t count = ends.size() / 2;
+	const auto column = [count](const boost::python::object& given, const char* name, int columns) {
+		const string field = string("GrainBonds.take.") + name;
+		vector<Real> found = numbersOf(given, field, columns);
+		const size_t rows = found.size() / std::max(columns, 1);
+		if (rows != count)
+			hexmembrane::reject(field, int(rows), "has another number of rows than ids, " + std::to_string(count), "one row for each bond");
+		for (Real number : found)
+			if (!math::isfinite(number)) hexmembrane::reject(field, number, "is not finite", "finite numbers");
+		return found;
+	};
+	const vector<Real> radii = column(radius, "radius", 0), normal = column(kn, "kn", 0), shear = column(ks, "ks", 0), forces = column(force, "force", 3),
+	                   moments = column(moment, "moment", 3);
+	BondTable& all = held();
+	std::set<std::pair<int, int>> have;
+	for (const BondTable::Bond& one : all.bonds) have.insert(std::minmax(one.id1, one.id2));
+	vector<BondTable::Bond> made;
+	for (size_t b = 0; b < count; ++b) {
+		const int i = int(ends[2 * b]), j = int(ends[2 * b + 1]);
+		const hexmembrane::Place first = placeOf(scene, i), second = placeOf(scene, j);
+		hexmembrane::requirePositive("GrainBonds.take.radius", radii[b], "m");
+		hexmembrane::requirePositive("GrainBonds.take.kn", normal[b], "N/m3");
+		hexmembrane::requireNonNegative("GrainBonds.take.ks", shear[b], "N/m3");
+		if (i == j || !have.insert(std::minmax(i, j)).second)
+			hexmembrane::reject("GrainBonds.take.ids", std::to_string(i) + " and " + std::to_string(j),
+			                    i == j ? "are one grain" : "have a bond of this engine already", "two grains without one, or another engine");
+		made.push_back(BondTable::loaded(BondTable::between(i, j, first, second, radii[b], normal[b], shear[b]),
+		                                 Vector3r(forces[3 * b], forces[3 * b + 1], forces[3 * b + 2]),
+		                                 Vector3r(moments[3 * b], moments[3 * b + 1], moments[3 * b + 2])));
+	}
+	all.bonds.insert(all.bonds.end(), made.begin(), made.end());
+	located = -1;
+	return static_cast<int>(count);
+}
+
 int GrainBonds::release(const vector<Body::id_t>& ids)
 {
 	BondTable& all = held();
@@ -234,7 +275,7 @@ boost::python::dict GrainBonds::bonds() const
 {
 	vector<int> ids;
 	vector<Vector3r> points, forces, moments;
-	vector<Real> radii, normal, tension, shear;
+	vector<Real> radii, kn, ks, normal, tension, shear;
 	forEachJoint([&](const TouchingContact& joint) {
 		points.push_back(joint.point);
 		forces.push_back(joint.force);
@@ -244,6 +285,8 @@ boost::python::dict GrainBonds::bonds() const
 		ids.insert(ids.end(), {one.id1, one.id2});
 		moments.push_back(one.loads.bending + one.loads.twist * one.loads.axis);
 		radii.push_back(one.made.radius);
+		kn.push_back(one.made.kn);
+		ks.push_back(one.made.ks);
 		normal.push_back(one.loads.normal);
 		tension.push_back(stress.tension);
 		shear.push_back(stress.shear);
@@ -251,6 +294,8 @@ boost::python::dict GrainBonds::bonds() const
 	boost::python::dict values;
 	values["ids"] = numpyArray(ids, "i4", 2);
 	values["radius"] = numpyArray(radii, "f8");
+	values["kn"] = numpyArray(kn, "f8");
+	values["ks"] = numpyArray(ks, "f8");
 	values["point"] = numpyArray(points, "f8", 3);
 	values["force"] = numpyArray(forces, "f8", 3);
 	values["moment"] = numpyArray(moments, "f8", 3);

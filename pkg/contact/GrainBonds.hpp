@@ -16,6 +16,8 @@ public:
 	void preSave(GrainBonds&);
 
 	int bond(const vector<Body::id_t>& ids, Real gap);
+	int take(const boost::python::object& ids, const boost::python::object& radius, const boost::python::object& kn, const boost::python::object& ks,
+	         const boost::python::object& force, const boost::python::object& moment);
 	int release(const vector<Body::id_t>& ids);
 	int count() const { return static_cast<int>(held().bonds.size()); }
 	Real elasticEnergy() const { return held().energy(); }
@@ -75,12 +77,17 @@ private:
 		,/*ctor*/,
 		.def("bond",&GrainBonds::bond,(boost::python::arg("ids"),boost::python::arg("gap")=0.),
 			"Bonds each two of these spheres whose surfaces are nearer than gap [m], >= 0, and that have no bond of this engine yet. Returns the number of new bonds.")
+		.def("take",&GrainBonds::take,
+			(boost::python::arg("ids"),boost::python::arg("radius"),boost::python::arg("kn"),boost::python::arg("ks"),boost::python::arg("force"),boost::python::arg("moment")),
+			"Makes bonds that were loaded elsewhere, a row each as bonds() tells them: 'ids' of the two grains (N, 2), 'radius' [m] > 0, 'kn' > 0 and 'ks' >= 0 [N/m³], 'force' [N] and 'moment' [N m] "
+			"on the second grain (N, 3). The grains stand where the loads were computed: the rest length follows from the force along the line of centres. Strengths are the engine's. "
+			"Returns their number. Nothing is made when a row is wrong, or its grains have a bond of this engine already.")
 		.def("release",&GrainBonds::release,(boost::python::arg("ids")),
 			"Takes away all bonds of these bodies, before they are erased for example. Returns their number; they do not count as broken.")
 		.add_property("count",&GrainBonds::count,"Number of bonds that hold.")
 		.def("elasticEnergy",&GrainBonds::elasticEnergy,"Elastic energy of all bonds [J] at the last step.")
 		.def("bonds",&GrainBonds::bonds,
-			"The bonds that hold, as a dict of arrays with a row each: 'ids' of the two grains, 'radius' [m], 'point' [m], "
+			"The bonds that hold, as a dict of arrays with a row each: 'ids' of the two grains, 'radius' [m], 'kn' and 'ks' [N/m³], 'point' [m], "
 			"'force' [N] and 'moment' [N m] on the second grain, 'normalForce' [N] compression positive, 'tension' and 'shear', the stresses σ and τ [Pa].")
 		.def("springs",&GrainBonds::springs,
 			"What the critical time step needs, a row each: (ids, unit normals, [kn A, ks A, kn I, ks J] in N/m and N m, [distance from each centre to the bond] in m).")

@@ -233,6 +233,52 @@ def test_released(O, tier):
 	assert scene.force(a).norm() == 0 and bonds.tensileBreaks == 0 and O.energy["bondDissip"] > 0
 
 
+TAKEN = ("ids", "radius", "kn", "ks", "force", "moment")
+
+
+def test_taken(O, tier):
+	"""Bonds of another engine's rows act as that engine's, from the step on in which they were told."""
+	bonds = cluster(tier)
+	tiers.run(70)
+	told = bonds.bonds()
+	forces, stored = told["force"], bonds.elasticEnergy()
+	for body in O.bodies:  # back to where the loads were computed
+		body.state.pos -= body.state.vel * O.dt
+		body.state.vel = body.state.angVel = (0, 0, 0)
+	other = GrainBonds(tensileStrength=math.inf, cohesion=math.inf)
+	assert other.take(*(told[name] for name in TAKEN)) == bonds.count
+	assert other.elasticEnergy() == pytest.approx(stored, rel=1e-6) and stored > 0
+	O.engines = tiers.engines(tier, [other])
+	tiers.run(1)
+	order = {tuple(ids): k for k, ids in enumerate(other.bonds()["ids"].tolist())}
+	again = other.bonds()["force"][[order[tuple(ids)] for ids in told["ids"].tolist()]]
+	assert np.abs(again - forces).max() < 1e-9 * np.abs(forces).max()
+
+
+def test_takenAreRefused(O):
+	scene.springs()
+	a, b = scene.pair(1e-3, 1e-3, 1e-6)
+	wall = scene.floor(face=(0, 0, -1e-2))
+	bonds = GrainBonds(tensileStrength=1e5, cohesion=1e5)
+	sound = dict(ids=[(a, b)], radius=[1e-3], kn=[KN], ks=[KS], force=[(0, 0, 1)], moment=[(0, 0, 0)])
+	for changes, message in (
+		({"ids": [(a, wall)]}, f"GrainBonds.ids = {wall}: is no sphere"),
+		({"ids": [(a, a)]}, "GrainBonds.take.ids = 0 and 0: are one grain; fix"),
+		({"ids": [(a, b, b)]}, "GrainBonds.take.ids = .*wrong shape"),
+		({"radius": [0]}, "GrainBonds.take.radius = 0"),
+		({"radius": []}, "GrainBonds.take.radius = 0: has another number of rows than ids, 1; fix: one row for each bond"),
+		({"kn": [-1]}, "GrainBonds.take.kn = -1"),
+		({"ks": [-1]}, "GrainBonds.take.ks = -1"),
+		({"force": [(0, math.nan, 0)]}, "GrainBonds.take.force = nan: is not finite"),
+		({"moment": [(0, 0)]}, "GrainBonds.take.moment = .*wrong shape"),
+	):
+		with pytest.raises(ValueError, match=message):
+			bonds.take(**{**sound, **changes})
+	assert bonds.count == 0 and bonds.take(**sound) == 1
+	with pytest.raises(ValueError, match="GrainBonds.take.ids = 0 and 1: have a bond of this engine already"):
+		bonds.take(**sound)
+
+
 @pytest.mark.parametrize(
 	"changes, message",
 	[

@@ -323,6 +323,26 @@ TEST(ParallelBond, CriticalStepOfEachSpring)
 	EXPECT_NEAR(square({1, 0, 0, 0, 0}, 0.3), 2 * 0.3 / inertia, 1e-6 * 0.3 / inertia);
 }
 
+// A bond that is made with the loads of another one goes on as that one, bit by bit but for the rest length's rounding.
+TEST(BondTable, GoesOnFromLoads)
+{
+	BondedPair pair, taken;
+	pair.move({3e-7, 1e-7, 2e-7}, {1e-4, -2e-4, 3e-4});
+	const BondTable::Bond& old = pair.table.bonds[0];
+	taken.places = pair.places;
+	const BondTable::Bond bare = BondTable::between(7, 3, pair.places[0], pair.places[1], pair.radius, pair.kn, pair.ks);
+	taken.table.bonds[0] =
+	        BondTable::loaded(bare, old.loads.normal * old.loads.axis + old.loads.shear, old.loads.bending + old.loads.twist * old.loads.axis);
+	EXPECT_NEAR(taken.table.bonds[0].made.rest, old.made.rest, 1e-15 * pair.r1);
+	EXPECT_NEAR(BondTable::distanceOf(taken.table.bonds[0]), (pair.places[1].centre - pair.places[0].centre).norm(), 1e-15);
+	taken.table.step(taken.places.data(), taken.motions.data(), pair.dt, unbreakable); // nothing has moved
+	for (BondedPair* each : {&pair, &taken}) each->move({-1e-7, 2e-7, 1e-7}, {2e-4, 1e-4, -1e-4});
+	for (int row = 0; row < 2; ++row) {
+		expectNear(taken.loads()[row].force, pair.loads()[row].force, 1e4 * pair.loads()[row].force.norm());
+		expectNear(taken.loads()[row].torque, pair.loads()[row].torque, 1e4 * pair.loads()[row].torque.norm());
+	}
+}
+
 // Rows in another order, bonds in another order: the same loads.
 TEST(BondTable, FindsItsSpheresInAnyOrder)
 {

@@ -35,7 +35,8 @@ def made(state, facetsFirst=False):
 	module = types.ModuleType("itasca")
 	balls = {row["id"]: _ball(row) for row in _rows(state.balls)}
 	walls = {row["id"]: _wall(row) for row in _rows(state.walls)}
-	contacts = [_contact(row, balls, walls, facetsFirst) for row in _rows(state.contacts)]
+	bonds = {} if state.bonds is None else {row["id"]: row for row in _rows(state.bonds)}
+	contacts = [_contact(row, balls, walls, facetsFirst, bonds.get(row["id"])) for row in _rows(state.contacts)]
 	contacts.append(entity("BallPebbleContact"))
 	measure = entity("Measure", id=7, pos=Vector((0, 0, 1)), radius=0.5, porosity=0.4, coordination=5.0, stress_xx=-1e5)
 	for name, found in (("ball", balls.values()), ("wall", walls.values()), ("contact", contacts), ("measure", [measure])):
@@ -65,7 +66,7 @@ def _wall(row):
 	return entity("Wall", id=int(row["id"]), name=row["name"], pos=_vector(row), vel=_vector(row, "v"), force_contact=_vector(row, "f"))
 
 
-def _contact(row, balls, walls, facetsFirst):
+def _contact(row, balls, walls, facetsFirst, bond):
 	pair = row["kind"] == "ball-ball"
 	one, two = balls[row["end1"]], balls[row["end2"]] if pair else entity("Facet", id=100, wall=walls[row["end2"]])
 	sign = 1
@@ -78,6 +79,14 @@ def _contact(row, balls, walls, facetsFirst):
 		local["cb_state"] = 3
 	if row["model"] == "rrlinear":
 		local["rr_moment"] = Vector(axes.T @ [sign * row[f"m{name}"] for name in "xyz"])
+	force = [sign * row[f"f{name}"] for name in "xyz"]
+	if bond:
+		local |= {name: bond[name] for name in ("pb_rmul", "pb_kn", "pb_ks", "pb_ten", "pb_coh", "pb_fa", "pb_mcf", "pb_sigma", "pb_tau")}
+		loads = {name: [bond[f"pb_{name[3]}{axis}"] for axis in "xyz"] for name in ("pb_force", "pb_moment")}
+		local |= {"pb_state": 3, **{name: Vector(axes.T @ values) for name, values in loads.items()}}
+		force = [own + more for own, more in zip(force, loads["pb_force"])]
+	elif row["model"] == "linearpbond":
+		local |= {"pb_state": 1, "pb_kn": 1e9}
 	return entity(
 		"BallBallContact" if pair else "BallFacetContact",
 		id=int(row["id"]),
@@ -87,7 +96,7 @@ def _contact(row, balls, walls, facetsFirst):
 		gap=row["gap"],
 		pos=_vector(row, "p"),
 		normal=Vector([sign * row[f"n{name}"] for name in "xyz"]),
-		force_global=Vector([sign * row[f"f{name}"] for name in "xyz"]),
+		force_global=Vector(force),
 		props=lambda: dict(local),
 		to_global=lambda vector: tuple(axes @ [vector.x(), vector.y(), vector.z()]),
 	)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The site is built without a warning, leads nowhere that is not, and its snippets are sound."""
+"""The site is built without a warning and leads nowhere that is not. Its snippets and commands: test_pages.py."""
 
 import html.parser
 import os
@@ -18,10 +18,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCS = ROOT / "scripts" / "docs.d"
 sys.path.append(str(DOCS))
 from classes import ROOMS, declared  # noqa: E402
-from sources import PAGES, markdownFiles  # noqa: E402
-
-FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
-TEXTS = {str(path): path.read_text(encoding="utf-8") for path in [*(ROOT / file for file in markdownFiles()), *PAGES.glob("*.md")]}
+from sources import PAGES  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -82,22 +79,6 @@ def test_everyAttributeHasPlainText():
 			if key not in statics and (not text.strip() or re.search(r":yref:|\$|\|yupdate", text)):
 				wrong.append(f"{name}.{key}")
 	assert wrong == []
-
-
-@pytest.mark.parametrize("path", TEXTS, ids=lambda path: os.path.relpath(path, ROOT))
-def test_snippets(path):
-	"""Python compiles, YAML is read, and each command of scripts/ that is named is there, as are the files that it is given."""
-	for language, code in FENCE.findall(TEXTS[path]):
-		if language == "python":
-			compile(code, path, "exec")
-		elif language == "yaml":
-			yaml.safe_load(code)
-	commands = re.sub(r"^```\{.*?^```", "", TEXTS[path], flags=re.MULTILINE | re.DOTALL)
-	for words in re.findall(r"(?:^|`)(scripts/[\w-]+(?![\w./-])(?: [^`\n#|]*)?)", commands, re.MULTILINE):
-		command, *arguments = words.split()
-		assert os.access(ROOT / command, os.X_OK) or (ROOT / command).is_dir(), words
-		files = [word for word in arguments if re.match(r"(examples|pkg|py|tests)/[\w./-]+\.(py|yaml|txt)$", word) and "NAME" not in word]
-		assert [word for word in files if not (ROOT / word).is_file()] == [], words
 
 
 def test_citation():

@@ -16,6 +16,15 @@ BondTable::Bond BondTable::between(int id1, int id2, const Place& first, const P
 	return {id1, id2, {radius, kn, ks, distance}, {0, 0, Vec3::Zero(), Vec3::Zero(), branch / distance}, first.centre, first.radius - second.radius, false};
 }
 
+BondTable::Bond BondTable::loaded(Bond bond, const Vec3& force, const Vec3& moment)
+{
+	const Vec3 axis = bond.loads.axis;
+	const double normal = force.dot(axis), twist = moment.dot(axis);
+	bond.loads = {normal, twist, force - normal * axis, moment - twist * axis, axis};
+	bond.made.rest += normal / (bond.made.kn * bond.made.area());
+	return bond;
+}
+
 double BondTable::distanceOf(const Bond& bond) { return bond.made.rest - bond.loads.normal / (bond.made.kn * bond.made.area()); }
 
 void BondTable::locate(const int* ids, int count)

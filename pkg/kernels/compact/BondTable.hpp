@@ -22,6 +22,8 @@ public:
 	};
 	/// A bond between two spheres as they are, without loads. \param radius of the disc (m) \param kn, ks stiffness by area (N/m3)
 	static Bond between(int id1, int id2, const Place& first, const Place& second, double radius, double kn, double ks);
+	/// A new bond with loads on its second sphere, as one has that was made long ago: its rest length follows from the force along the line of centres.
+	static Bond loaded(Bond bond, const Vec3& force, const Vec3& moment);
 	/// From the centre of the first sphere to the second's when the loads were computed (m).
 	static double distanceOf(const Bond& bond);
 	/// From the centres to the contact point, along the normal (m).

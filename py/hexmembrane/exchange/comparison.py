@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Contact by contact: what the plugin's law makes of a state's tables, against the forces in them.
 
-Each contact of the table becomes one of YADE's with the table's stiffness, friction, strengths, shear force and moment. The law takes a step in which nothing
-moves, or the step from one export to the next. What it computes or cuts is compared. Nothing of the law is written down here: factors of a contact's shape
+Each contact of the table becomes one of YADE's with the table's stiffness, friction, strengths, shear force and moment, each parallel bond one of GrainBonds. The laws
+take a step in which nothing moves, or the step from one export to the next. What it computes or cuts is compared. Nothing of the law is written down here: factors of a contact's shape
 (lever arm, min(R1, R2)^2/(R1 + R2)) are read from a contact of unit material too.
 """
 
@@ -13,11 +13,11 @@ import yade
 from yade import O, utils
 
 from hexmembrane.configuration import ConfigError
-from hexmembrane.exchange import scenes, tables
+from hexmembrane.exchange import bonds, scenes, tables
 from hexmembrane.scene.builder import interactionLoop
 
 #: Contact models whose law is here.
-MODELS = ("linear", "rrlinear", "linearcbond")
+MODELS = ("linear", "rrlinear", "linearcbond", tables.PARALLEL)
 #: The least force that a difference is taken relative to, as a share of the mean normal force.
 _LEAST = 1e-3
 #: A step in which nothing moves [s].
@@ -27,9 +27,10 @@ _WORST = 5
 
 @dataclasses.dataclass
 class Quantity:
-	"""One comparison: ``place``, the contacts' lines in the table; ``there`` and ``here``, the values; ``difference``, relative."""
+	"""One comparison: ``place``, rows of the ``table``, contacts or bonds; ``there`` and ``here``, the values; ``difference``, relative."""
 
 	name: str
+	table: str
 	place: numpy.ndarray
 	there: numpy.ndarray
 	here: numpy.ndarray
@@ -54,9 +55,10 @@ class Comparison:
 		contacts = self.state.contacts
 		kinds = [contacts["kind"].count(kind) for kind in (tables.BALL_BALL, tables.BALL_FACET)]
 		left = sum(self.left.values())
-		told = [f"{len(self.state.balls)} balls, {len(contacts)} contacts: {kinds[0]} of balls, {kinds[1]} with walls; cycle {contacts.head.get('cycle', 'unknown')}"]
+		cemented = f"; {len(self.state.bonds)} parallel bonds" if self.state.bonds is not None and len(self.state.bonds) else ""
+		told = [f"{len(self.state.balls)} balls, {len(contacts)} contacts: {kinds[0]} of balls, {kinds[1]} with walls{cemented}; cycle {contacts.head.get('cycle', 'unknown')}"]
 		told += [f"compared {len(contacts) - left}, left out {left}" + "".join(f"; {count}: {why}" for why, count in self.left.items()), *self.notes]
-		told.append(f"{'':34}{'contacts':>9}{'beyond ' + format(tolerance, '.0e'):>14}{'largest difference':>20}")
+		told.append(f"{'':34}{'compared':>9}{'beyond ' + format(tolerance, '.0e'):>14}{'largest difference':>20}")
 		for quantity in self.quantities:
 			many = int((quantity.difference > tolerance).sum())
 			largest = f"{quantity.difference.max():.1e}" if len(quantity.place) else "-"
@@ -68,12 +70,10 @@ class Comparison:
 		return told
 
 	def _worst(self, quantity, k):
-		contacts, place = self.state.contacts, int(quantity.place[k])
-		ends = f"{contacts['end1'][place]:.0f} and {contacts['end2'][place]:.0f}"
-		return (
-			f"{quantity.name}: contact {contacts['id'][place]:.0f} of {ends} ({contacts['kind'][place]}, line {contacts.lines[place]}): "
-			f"{quantity.there[k]:.9g} there, {quantity.here[k]:.9g} here"
-		)
+		table, place = getattr(self.state, quantity.table), int(quantity.place[k])
+		ends = f"{table['end1'][place]:.0f} and {table['end2'][place]:.0f}"
+		what = f"({table['kind'][place]}, line {table.lines[place]})" if quantity.table == "contacts" else f"(bonds.csv, line {table.lines[place]})"
+		return f"{quantity.name}: contact {table['id'][place]:.0f} of {ends} {what}: {quantity.there[k]:.9g} there, {quantity.here[k]:.9g} here"
 
 
 def compare(state, then=None):
@@ -94,19 +94,23 @@ def compare(state, then=None):
 			left[why] = left.get(why, 0) + 1
 		else:
 			taken.append(place)
-	unit, contacts = _make(state, shown, taken, before, sign)
-	if then is None:
-		O.dt = STILL
-	else:
+	unit, contacts, bodies = _make(state, shown, taken, before, sign)
+	cement, rows = bonds.engines(state, bodies, sign)
+	laws, O.dt = list(O.engines), STILL
+	if then is not None:
+		O.engines = [laws[0], *cement]
+		O.step()  # a bond's first step is the one in which it is made
 		_advance(state, then, taken, contacts)
+	O.engines = [*laws, *cement]
 	O.step()
-	return Comparison(shown, _quantities(shown, taken, unit, contacts, loads, then is not None), left, notes)
+	quantities = _quantities(shown, taken, unit, contacts, loads, then is not None) + _ofBonds(state, shown, cement, rows, sign, then is not None)
+	return Comparison(shown, [one for one in quantities if len(one.place)], left, notes)
 
 
 def units(state):
 	"""Normal stiffness [N/m] that a unit modulus gives each contact, by the plugin's law; leaves YADE's scene empty."""
 	everything = list(range(len(state.contacts)))
-	found, _ = _make(state, state, everything, everything, 1)
+	found, *_ = _make(state, state, everything, everything, 1)
 	O.reset()
 	return found[:, 0]
 
@@ -159,7 +163,7 @@ def _signed(contacts, notes):
 
 
 def _make(state, shown, taken, before, sign):
-	"""Bodies and contacts: (kn, ks, kr and rollingArm of a contact of unit material, by contact; the contacts with their two bodies)."""
+	"""Bodies and contacts: (kn, ks, kr and rollingArm of a contact of unit material, by contact; the contacts with their two bodies; bodies by PFC's number)."""
 	material = O.materials.append(yade.LinearMat(emod=1, kratio=1, friction=0, rollingFriction=1, density=1000, label="unit"))
 	bodies = scenes.appendBalls(state.balls, [material] * len(state.balls), dynamic=False)
 	O.engines = [yade.ForceResetter(), interactionLoop()]
@@ -187,7 +191,7 @@ def _make(state, shown, taken, before, sign):
 		if now["model"][place] == "linearcbond" and first["cb_state"][before[place]] == tables.BONDED:
 			phys.bond(float(now["cb_tenf"][place]), float(now["cb_shearf"][place]))
 		scenes.setMemory(contact, one, sign * shear[before[place]], sign * moments[before[place]])
-	return unit, contacts
+	return unit, contacts, bodies
 
 
 def _advance(state, then, taken, contacts):
@@ -243,7 +247,7 @@ def _quantities(shown, taken, unit, contacts, loads, stepped):
 	still = numpy.array([contact.isReal and contact.phys.bonded for contact, *_ in contacts], dtype=float)
 
 	def quantity(name, mask, there, here, difference):
-		return Quantity(name, taken[mask], there[mask], here[mask], difference[mask])
+		return Quantity(name, "contacts", taken[mask], there[mask], here[mask], difference[mask])
 
 	everything = numpy.ones(len(taken), dtype=bool)
 	told = " of the step" if stepped else " within mu Fn"
@@ -259,4 +263,35 @@ def _quantities(shown, taken, unit, contacts, loads, stepped):
 	byModulus = emod * unit[:, 0]
 	found.append(quantity("kn, by emod", emod > 0, stiffness, byModulus, abs(stiffness - byModulus) / stiffness))
 	found.append(quantity("bond holds", bonded, bonded.astype(float), still, abs(bonded - still)))
-	return [one for one in found if len(one.place)]
+	return found
+
+
+def _ofBonds(state, shown, cement, rows, sign, stepped):
+	"""Parallel bonds that both exports have: of a step the loads, else the stresses that the loads give."""
+	if not cement:
+		return []
+	first, table = state.bonds, shown.bonds
+	row = {ends: k for k, ends in enumerate(zip(first["end1"].tolist(), first["end2"].tolist()))}
+	both = [(row[ends], k) for k, ends in enumerate(zip(table["end1"].tolist(), table["end2"].tolist())) if ends in row] if table is not None else []
+	before, place = numpy.array(both, dtype=int).reshape(-1, 2).T
+	here = {name: values[before] for name, values in bonds.held(cement, rows, len(first)).items()}
+	force, moment = (sign * table.vectors(f"pb_{letter}")[place] for letter in "fm") if len(place) else (numpy.zeros((0, 3)),) * 2
+
+	def compared(name, there, found, difference):
+		known = ~numpy.isnan(there)
+		return Quantity(name, "bonds", place[known], there[known], found[known], difference[known])
+
+	def size(values):
+		return numpy.maximum(values, _LEAST * (values.mean() if len(values) else 1)) + 1e-300
+
+	found = []
+	if stepped:
+		scale = size(_length(force))
+		found.append(compared("parallel bond's force of the step", _length(force), _length(here["force"]), _length(force - here["force"]) / scale))
+		scale = size(_length(moment))
+		found.append(compared("parallel bond's moment of the step", _length(moment), _length(here["moment"]), _length(moment - here["moment"]) / scale))
+	for name, column, key in () if stepped else (("parallel bond's normal stress", "pb_sigma", "tension"), ("parallel bond's shear stress", "pb_tau", "shear")):
+		there = table[column][place] if len(place) else numpy.zeros(0)
+		found.append(compared(name, there, here[key], abs(there - here[key]) / size(numpy.nan_to_num(abs(there)))))
+	found.append(compared("parallel bond holds", numpy.ones(len(place)), here["holds"], 1 - here["holds"]))
+	return found

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Going on from a state's tables: balls with their velocities, contacts with forces, moments and bonds, flat walls, materials of the contacts' properties.
+"""Going on from a state's tables: balls with their velocities, contacts with forces, moments and bonds, parallel bonds, flat walls, materials of the contacts' properties.
 
 A cycle of PFC ends with the forces, a step of YADE with the motion. So the last thing done here is the motion that the state's forces cause.
 """
@@ -9,7 +9,7 @@ import yade
 from yade import O, utils
 
 from hexmembrane.configuration import ConfigError
-from hexmembrane.exchange import comparison, materials, scenes, tables
+from hexmembrane.exchange import bonds, comparison, materials, scenes, tables
 from hexmembrane.scene.builder import boxes, interactionLoop
 
 #: Relative difference of planes that count as one.
@@ -23,10 +23,12 @@ def resume(state, damping=0.0):
 	"""Bring the state into YADE's empty scene, with the engines of the reference tier, one motion later than its tables.
 
 	Materials are those of :func:`hexmembrane.exchange.materials.materialsOf`. Each plane that a wall's contacts show is a fixed ``Platen`` with the wall's velocity.
+	Parallel bonds are in engines of ``GrainBonds``, one for each set of strengths.
 
 	:param state: :class:`hexmembrane.exchange.tables.State`, see :func:`hexmembrane.exchange.tables.read`. :param damping: PFC's damp, local damping.
 	:returns: ids of bodies, by PFC's number of the ball.
-	:raises ConfigError: contacts of one pair of materials have different properties, a wall is not convex, or the tables lack velocities, density or the timestep.
+	:raises ConfigError: contacts of one pair of materials have different properties, bonds have too many sets of strengths, a wall is not convex, or the tables
+		lack velocities, density or the timestep.
 	"""
 	if len(O.bodies):
 		raise RuntimeError(f"O.bodies = {len(O.bodies)} bodies: an empty scene is needed; fix: O.reset() first")
@@ -54,7 +56,7 @@ def resume(state, damping=0.0):
 		if contacts["cb_state"][k] == tables.BONDED:
 			contact.phys.bond(float(contacts["cb_tenf"][k]), float(contacts["cb_shearf"][k]))
 		scenes.setMemory(contact, first, shear[k], moments[k])
-	_move(state, bodies, damping)
+	_move(state, bodies, damping, bonds.engines(state, bodies)[0])
 	return bodies
 
 
@@ -103,8 +105,9 @@ def _platen(centres, radii, normal, offset, material, velocity):
 	return O.bodies.append(body)
 
 
-def _move(state, bodies, damping):
-	"""The state's forces, from contacts at rest, and the motion that they cause from the state's velocities; then the reference tier's engines."""
+def _move(state, bodies, damping, cement):
+	"""The state's forces, from contacts and bonds at rest, and the motion that they cause from the state's velocities; then the reference tier's engines."""
+	O.engines = [*O.engines, *cement]
 	O.dt = comparison.STILL
 	O.step()
 	speeds = zip(bodies.values(), state.balls.vectors("v").tolist(), state.balls.vectors("w").tolist())
@@ -115,4 +118,4 @@ def _move(state, bodies, damping):
 	O.engines = [motion]
 	O.step()
 	motion.warnNoForceReset = True
-	O.engines = [yade.ForceResetter(), yade.InsertionSortCollider(boxes(), verletDist=-0.1), loop, motion]
+	O.engines = [yade.ForceResetter(), yade.InsertionSortCollider(boxes(), verletDist=-0.1), loop, *cement, motion]

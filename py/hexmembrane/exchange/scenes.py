@@ -11,7 +11,7 @@ import numpy
 import yade
 from yade import O, utils
 
-from hexmembrane.exchange import tables
+from hexmembrane.exchange import bonds, tables
 from hexmembrane.scene.handles import compactLoop
 from hexmembrane.scene.platens import platen
 
@@ -79,7 +79,11 @@ def write(folder, ids=None, moved=True):
 	walls = sorted({k for contact in found for k in (contact.id1, contact.id2)} - spheres)
 	folder = pathlib.Path(folder)
 	tables.write(folder, "balls", [_ball(O.bodies[k], back) for k in sorted(spheres)], head)
-	tables.write(folder, "contacts", [_contact(k + 1, contact, spheres) for k, contact in enumerate(found)], head)
+	numbers = {frozenset((contact.id1, contact.id2)): k + 1 for k, contact in enumerate(found)}
+	cement = bonds.rowsOf(spheres, numbers, back)
+	bonded = {row["id"] for row in cement}
+	tables.write(folder, "contacts", [_contact(k + 1, contact, spheres, k + 1 in bonded) for k, contact in enumerate(found)], head)
+	tables.write(folder, "bonds", cement, head)
 	tables.write(folder, "walls", [_wall(O.bodies[k], back, found) for k in walls], head)
 
 
@@ -94,7 +98,7 @@ def _ball(body, back):
 	return {"id": body.id, **_named("", place), "r": body.shape.radius, **_named("v", state.vel), **_named("w", state.angVel), "density": body.material.density, "group": label}
 
 
-def _contact(number, contact, spheres):
+def _contact(number, contact, spheres, bonded):
 	phys, geom = contact.phys, contact.geom
 	if not isinstance(phys, yade.LinearPhys):
 		raise ValueError(f"contact {contact.id1}-{contact.id2}: is a {type(phys).__name__}; fix: bodies of LinearMat alone")
@@ -104,7 +108,7 @@ def _contact(number, contact, spheres):
 	kind = tables.BALL_BALL if second in spheres else tables.BALL_FACET
 	radii = [O.bodies[k].shape.radius for k in (first, second)[: 2 if kind == tables.BALL_BALL else 1]]
 	lever = 1 / sum(1 / radius for radius in radii)
-	model = "linearcbond" if phys.bonded else "rrlinear" if phys.rollingArm > 0 else "linear"
+	model = "linearcbond" if phys.bonded else "rrlinear" if phys.rollingArm > 0 else tables.PARALLEL if bonded else "linear"
 	row = {"id": number, "kind": kind, "end1": first, "end2": second, "model": model, "gap": -geom.penetrationDepth, "kn": phys.kn, "ks": phys.ks}
 	row |= {**_named("p", geom.contactPoint), **_named("n", axis), **_named("f", normal * axis + shear), "fric": phys.tangensOfFrictionAngle}
 	row |= {"dp_nratio": 0, "dp_sratio": 0, "rgap": 0, "lin_mode": 0}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Tables of a state: balls.csv, contacts.csv, walls.csv and measures.csv in a folder, as an exporter inside PFC writes them. Uses nothing of YADE.
+"""Tables of a state: balls.csv, contacts.csv, bonds.csv, walls.csv and measures.csv in a folder, as an exporter inside PFC writes them. Uses nothing of YADE.
 
 Each file is CSV (UTF-8). Its first line is ``# hexmembrane-tables=1 table=NAME cycle=N timestep=SECONDS time=SECONDS``, more lines with # may follow, then comes
 the line of the columns. SI units. A field that the state does not have is empty. Columns that are not known are left out.
@@ -39,7 +39,7 @@ COLUMNS = {
 		"gap": ("m", "distance of the surfaces, below 0 in contact"),
 		**{f"p{name}": ("m", f"{name} of the contact's place") for name in _VECTOR},
 		**{f"n{name}": ("", f"{name} of the unit normal, from end 1 to end 2") for name in _VECTOR},
-		**{f"f{name}": ("N", f"{name} of the force on end 2") for name in _VECTOR},
+		**{f"f{name}": ("N", f"{name} of the force on end 2, without that of a parallel bond") for name in _VECTOR},
 		**{f"m{name}": ("N m", f"{name} of the moment of rolling resistance on end 2") for name in _VECTOR},
 		"kn": ("N/m", "normal stiffness of the contact"),
 		"ks": ("N/m", "shear stiffness"),
@@ -54,6 +54,22 @@ COLUMNS = {
 		"dp_sratio": ("", "shear damping ratio of the dashpot"),
 		"rgap": ("m", "reference gap"),
 		"lin_mode": ("", "0: normal force from the gap, 1: by increments"),
+	},
+	"bonds": {
+		"id": ("", "PFC's number of the contact that the parallel bond belongs to"),
+		"end1": ("", "number of the ball at end 1"),
+		"end2": ("", "number of the ball at end 2"),
+		"pb_rmul": ("", "radius of the bond over the smaller ball's"),
+		"pb_kn": ("N/m3", "normal stiffness of the bond by area"),
+		"pb_ks": ("N/m3", "shear stiffness by area"),
+		"pb_ten": ("Pa", "tensile strength"),
+		"pb_coh": ("Pa", "cohesion"),
+		"pb_fa": ("degrees", "friction angle"),
+		"pb_mcf": ("", "share of the moments in the stresses"),
+		**{f"pb_f{name}": ("N", f"{name} of the bond's force on end 2") for name in _VECTOR},
+		**{f"pb_m{name}": ("N m", f"{name} of the bond's moment on end 2") for name in _VECTOR},
+		"pb_sigma": ("Pa", "largest normal stress in the bond, tension positive"),
+		"pb_tau": ("Pa", "largest shear stress in the bond"),
 	},
 	"walls": {
 		"id": ("", "PFC's number of the wall"),
@@ -74,10 +90,15 @@ COLUMNS = {
 _NEEDED = {
 	"balls": ("id", "x", "y", "z", "r"),
 	"contacts": ("id", "kind", "end1", "end2", "model", "gap", "nx", "ny", "nz", "fx", "fy", "fz", "kn", "ks", "fric"),
+	"bonds": ("end1", "end2", "pb_rmul", "pb_kn", "pb_ks", "pb_ten", "pb_coh", "pb_fa", "pb_mcf", "pb_fx", "pb_fy", "pb_fz", "pb_mx", "pb_my", "pb_mz"),
 	"walls": ("id", "x", "y", "z"),
 	"measures": ("id", "x", "y", "z", "r"),
 }
 _TEXTS = ("kind", "model", "group", "name")
+#: Strengths of bonds, which may be infinite.
+_STRENGTHS = ("pb_ten", "pb_coh")
+#: PFC's contact model that has parallel bonds.
+PARALLEL = "linearpbond"
 BALL_BALL, BALL_FACET = "ball-ball", "ball-facet"
 #: cb_state of a contact that is bonded.
 BONDED = 3
@@ -112,11 +133,12 @@ class Table:
 
 @dataclasses.dataclass
 class State:
-	"""The tables of a folder: ``balls`` and ``contacts``, ``walls`` and ``measures`` where they are there (else None)."""
+	"""The tables of a folder: ``balls`` and ``contacts``; ``bonds``, those that hold, ``walls`` and ``measures`` where they are there (else None)."""
 
 	folder: pathlib.Path
 	balls: Table
 	contacts: Table
+	bonds: Table = None
 	walls: Table = None
 	measures: Table = None
 
@@ -181,7 +203,7 @@ def _column(path, name, column, lines, texts):
 			values[k] = float(text) if text else math.nan
 		except ValueError:
 			raise ConfigError(f"{name}.csv", str(path), f"line {lines[k]}: {column} = {shown(text)} is no number", "numbers alone, in SI units") from None
-		if column in _NEEDED[name] and not math.isfinite(values[k]):
+		if column in _NEEDED[name] and not math.isfinite(values[k]) and not (column in _STRENGTHS and values[k] == math.inf):
 			raise ConfigError(f"{name}.csv", str(path), f"line {lines[k]}: {column} = {shown(text)} is not finite", "a value in each line")
 	return values
 
@@ -205,18 +227,42 @@ def _checkEnds(state):
 		if kind == BALL_BALL and (ends[0] == ends[1] or pairs.setdefault(frozenset(ends), line) != line):
 			wrong = f"line {line}: balls {ends[0]:g} and {ends[1]:g} are " + ("one" if ends[0] == ends[1] else f"in line {pairs[frozenset(ends)]} already")
 			raise ConfigError("contacts.csv", str(state.folder), wrong, "each pair of balls once")
-	_checkBonds(state)
+	_checkContactBonds(state)
+	_checkParallelBonds(state, ids)
 	normals = numpy.linalg.norm(contacts.vectors("n"), axis=1)
 	if len(contacts) and abs(normals - 1).max() > 1e-6:
 		k = int(abs(normals - 1).argmax())
 		raise ConfigError("contacts.csv", str(state.folder), f"line {contacts.lines[k]}: the normal has the length {normals[k]:g}", "unit normals")
 
 
-def _checkBonds(state):
+def _checkContactBonds(state):
 	contacts = state.contacts
 	for line, model, bond, *strengths in zip(contacts.lines, contacts["model"], contacts["cb_state"], contacts["cb_tenf"], contacts["cb_shearf"]):
 		if model == "linearcbond" and bond == BONDED and not min(strengths) > 0:
 			raise ConfigError("contacts.csv", str(state.folder), f"line {line}: a bonded contact has strengths {strengths[0]:g} and {strengths[1]:g}", "cb_tenf and cb_shearf > 0")
+
+
+def _checkParallelBonds(state, ids):
+	"""The bonds are there where there may be some, each once, between balls that are, with numbers that a bond can have."""
+	bonds = state.bonds
+	if bonds is None:
+		if PARALLEL in state.contacts["model"]:
+			line = state.contacts.lines[state.contacts["model"].index(PARALLEL)]
+			raise ConfigError("bonds.csv", str(state.folder), f"is missing, and contacts.csv has the model {PARALLEL} in line {line}", "export it anew by this version's exporter")
+		return
+	pairs = {}
+	for line, *ends in zip(bonds.lines, bonds["end1"].tolist(), bonds["end2"].tolist()):
+		for end in ends:
+			if end not in ids:
+				raise ConfigError("bonds.csv", str(state.folder), f"line {line}: there is no ball {end:g}", "balls.csv and bonds.csv of one export; bonds with walls are not known here")
+		if ends[0] == ends[1] or pairs.setdefault(frozenset(ends), line) != line:
+			wrong = f"line {line}: balls {ends[0]:g} and {ends[1]:g} are " + ("one" if ends[0] == ends[1] else f"in line {pairs[frozenset(ends)]} already")
+			raise ConfigError("bonds.csv", str(state.folder), wrong, "each pair of balls once")
+	for name, low, high in (("pb_rmul", 0, math.inf), ("pb_kn", 0, math.inf), ("pb_ks", -1e-300, math.inf), ("pb_ten", -1e-300, math.nan), ("pb_coh", -1e-300, math.nan),
+			("pb_fa", -1e-300, 90), ("pb_mcf", -1e-300, 1 + 1e-12)):  # fmt: skip
+		for line, value in zip(bonds.lines, bonds[name].tolist()):
+			if not value > low or value >= high:
+				raise ConfigError("bonds.csv", str(state.folder), f"line {line}: {name} = {value:g} is out of range", "what PFC has of a bond that holds")
 
 
 def write(folder, name, rows, head):

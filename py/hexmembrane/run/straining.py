@@ -67,7 +67,8 @@ class _Sheared(Stage):
 		progress.say(
 			f"{what} {100 * row['axial_strain']:.2f} %: q {1e-3 * row['q']:.1f} kPa, volumetric strain "
 			f"{100 * row['volumetric_strain_radius']:.2f} % (Eq. 6) and {100 * row['volumetric_strain_volume']:.2f} % (volume), "
-			f"transmitted {1e-3 * row['sigma3_transmitted_group3']:.2f} kPa ({watch.summary(self.test.records.path)}), broken bonds {row['bonds_broken']}"
+			f"transmitted {1e-3 * row['sigma3_transmitted_group3']:.2f} kPa ({watch.summary(self.test.records.path)}), broken bonds of the membrane {row['bonds_broken']}"
+			+ (f", cement: {row['cement_bonds']} bonds hold, {row['cement_broken_tension']} broke in tension, {row['cement_broken_shear']} in shear" if "cement_bonds" in row else "")
 			+ (f", energy balance off by {100 * row['energy_error']:.2g} %" if O.trackEnergy else "")
 		)
 
