@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The plain YADE scripts of examples/scripts, each in its short form (SHORT), one after the other in one YADE as scripts/yade starts it."""
 
+import ast
 import os
 import pathlib
 import re
@@ -67,6 +68,13 @@ def said(tmp_path_factory):
 @pytest.mark.parametrize("name", SAYS)
 def test_script(said, name):
 	assert re.search(SAYS[name], said[name]), said[name]
+
+
+def test_noneUsesItsFile():
+	"""YADE runs a script with its own program's ``__file__``: a place beside the script is told by sys.argv[0], one in the checkout by the package."""
+	for path in (SCRIPTS.parent).rglob("*.py"):
+		names = [node.id for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.Name)]
+		assert "__file__" not in names, path
 
 
 def test_allAreTriedAndListed():
