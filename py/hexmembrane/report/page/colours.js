@@ -21,8 +21,8 @@
 	// value -> [r, g, b] of 0 to 255; what is no number is grey.
 	report.scale = (name, [low, high]) => {
 		const colours = (tables[name] ??= table(name));
-		const factor = high > low ? (STEPS - 1) / (high - low) : 0;
-		return (value) => (Number.isNaN(value) ? GREY : colours[Math.max(0, Math.min(STEPS - 1, Math.round((value - low) * factor)))]);
+		const share = (value) => (high > low ? (value - low) / (high - low) : 0.5);
+		return (value) => (Number.isNaN(value) ? GREY : colours[Math.max(0, Math.min(STEPS - 1, Math.round((STEPS - 1) * share(value))))]);
 	};
 
 	let bars = 0;
