@@ -76,7 +76,7 @@ def test_recovery(tmp_path, monkeypatch):
 
 	def series(tests, sets):
 		values = [list(tests.calibration.values(point).values()) for _, point in sets]
-		return {name: {"98 kPa": [made(*own, random) for _ in range(2)]} for (name, _), own in zip(sets, values)}, {name: [] for name, _ in sets}
+		return {name: {"98 kPa": [made(*own, random) for _ in tests.calibration.seeds]} for (name, _), own in zip(sets, values)}, {name: [] for name, _ in sets}
 
 	monkeypatch.setattr(recovery.evaluate.Inside, "series", series)
 	rows = recovery.trials(tmp_path, lambda text: None)
