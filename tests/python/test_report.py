@@ -277,6 +277,9 @@ def test_command(tmp_path, capsys, monkeypatch):
 	assert command.main([str(tmp_path / "later"), "--watch", "7"]) == 130 and "waiting for a test in " in capsys.readouterr().out
 	monkeypatch.setattr(libraries, "FOLDERS", (tmp_path,))
 	assert command.main([str(folder)]) == 1 and "fix: apt-get install node-d3" in capsys.readouterr().err
+	(tmp_path / "d3" / "dist").mkdir(parents=True)
+	(tmp_path / "d3" / "dist" / "d3.min.js").write_text("harmed = 1")
+	assert command.main([str(folder)]) == 1 and "d3.min.js': is not the file that pages are tried with (SHA-256 " in capsys.readouterr().err
 
 
 def test_aStudyIsOpenedByItsPlan(tmp_path):
