@@ -4,6 +4,7 @@
 #include "NumpyArray.hpp"
 
 #include "base/NamedFields.hpp"
+#include "kernels/measure/BandLikelihood.hpp"
 
 namespace yade {
 
@@ -113,6 +114,18 @@ boost::python::tuple BandSearch::excess(const Given& plane, const Given& beside)
 Given BandSearch::refined(const Given& plane, const Given& limits, const Given& beside, Real tolerance, int trials) const
 {
 	return asked([&] { return arrayOf(hexmembrane::refinedPlane(field(beside), limitsOf(limits), planeOf(plane), tolerance, trials)); });
+}
+
+Given BandSearch::likeliest(const Given& planes, const Given& limits, Real diameter, int rounds, Real tolerance, int trials) const
+{
+	return asked([&] {
+		const vector<BandPlane> start = planesOf(planes, "planes");
+		const hexmembrane::BandLikelihood likelihood(required(), start, diameter);
+		vector<Real> rows;
+		for (const BandPlane& plane : likelihood.refined(start, limitsOf(limits), rounds, tolerance, trials))
+			rows.insert(rows.end(), plane.data(), plane.data() + 4);
+		return numpyArray(rows, "f8", 4);
+	});
 }
 
 Given BandSearch::slab(const Given& plane, const Given& limits, const Given& beside) const

@@ -21,6 +21,7 @@ public:
 	boost::python::tuple jump(const Given& plane, const Given& beside, bool uniform) const;
 	boost::python::tuple excess(const Given& plane, const Given& beside) const;
 	boost::python::object refined(const Given& plane, const Given& limits, const Given& beside, Real tolerance, int trials) const;
+	boost::python::object likeliest(const Given& planes, const Given& limits, Real diameter, int rounds, Real tolerance, int trials) const;
 	boost::python::object slab(const Given& plane, const Given& limits, const Given& beside) const;
 
 private:
@@ -58,6 +59,11 @@ private:
 		.def("refined",&BandSearch::refined,(boost::python::arg("plane"),boost::python::arg("limits"),boost::python::arg("beside")=boost::python::tuple(),
 			boost::python::arg("tolerance")=0.02,boost::python::arg("trials")=200),
 			"The most likely plane near a plane, within the limits. :param tolerance: in paces. :param trials: planes looked at, at most.")
+		.def("likeliest",&BandSearch::likeliest,(boost::python::arg("planes"),boost::python::arg("limits"),boost::python::arg("diameter"),boost::python::arg("rounds")=3,
+			boost::python::arg("tolerance")=0.02,boost::python::arg("trials")=200),
+			"The planes, (K, 4), fitted in turn by generalised least squares: grains also move in vortices, whose size and strength are those of the greatest likelihood "
+			"for what the planes leave (``kernels/measure/BandLikelihood.hpp``). "
+			":param diameter: d50 [m], the unit of the lengths that are tried.")
 		.def("slab",&BandSearch::slab,(boost::python::arg("plane"),boost::python::arg("limits"),boost::python::arg("beside")=boost::python::tuple()),
 			"The slab of uniform shear, parallel to the plane, whose displacement fits best.")
 	);

@@ -4,8 +4,9 @@
 #include "kernels/base/Check.hpp"
 #include "kernels/base/NelderMead.hpp"
 #include "kernels/base/Random.hpp"
-#include "kernels/measure/BandSearch.hpp"
+#include "kernels/measure/BandLikelihood.hpp"
 
+#include <Eigen/QR>
 #include <Eigen/SVD>
 
 using namespace hexmembrane;
@@ -234,4 +235,92 @@ TEST(NelderMead, aCurvedValley)
 	nelderMead(simplex, {0, 0, 50}, [&](const Eigen::VectorXd& x) { return ++trials, rosenbrock(x); });
 	EXPECT_GE(trials, 50);
 	EXPECT_LE(trials, 53);
+}
+
+TEST(BandLikelihood, isGeneralisedLeastSquares)
+{
+	const Step step = someStep(500);
+	const BandGrains grains(step.x, step.u, step.weights, step.strain);
+	const BandLikelihood likelihood(grains, {along}, 0.002);
+	const BandNoise& noise = likelihood.noise();
+	// the waves as functions, and a row for each with the root of its precision: the squares with them are the generalised ones
+	const BandColumns columns(step.x, step.u, step.weights, step.strain);
+	const BandWaves waves(columns);
+	const Eigen::VectorXd variances = noise.ratio * waves.variances(noise.length);
+	double all = 0;
+	for (double w : step.weights) all += w;
+	const int n = int(step.x.size());
+	const auto left = [&](const std::vector<BandPlane>& planes) {
+		Oracle oracle(step);
+		for (const BandPlane& plane : planes) {
+			oracle = oracle.with(plane);
+			for (int k = 0; k < 3; ++k) {
+				Eigen::VectorXd shape = Eigen::VectorXd::Zero(3 * n);
+				for (int i = 0; i < n; ++i) {
+					const double a = std::sqrt(6.) * oracle.distance(i, plane);
+					shape[k * n + i] = a * std::exp(-a * a);
+				}
+				oracle.displacement.push_back(shape);
+			}
+		}
+		const std::size_t free = oracle.displacement.size();
+		for (int k = 0; k < 3; ++k)
+			for (int w = 0; w < BandWaves::count; ++w) {
+				const auto wave = waves.function(BandColumns::powers + w);
+				Eigen::VectorXd column = Eigen::VectorXd::Zero(3 * n);
+				for (int i = 0; i < n; ++i) column[k * n + i] = wave[i] * std::sqrt(variances[w]);
+				oracle.displacement.push_back(column);
+			}
+		const Eigen::Index total = Eigen::Index(oracle.displacement.size());
+		Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * n + total, total);
+		Eigen::VectorXd values = Eigen::VectorXd::Zero(3 * n + total);
+		for (int i = 0; i < 3 * n; ++i) {
+			const double root = std::sqrt(step.weights[i % n] * n / all);
+			values[i] = root * step.u[i % n][i / n];
+			for (Eigen::Index k = 0; k < total; ++k) a(i, k) = root * oracle.displacement[k][i];
+		}
+		for (Eigen::Index k = Eigen::Index(free); k < total; ++k) a(3 * n + k, k) = 1;
+		Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solved;
+		solved.setThreshold(1e-10);
+		solved.compute(a);
+		return (values - a * solved.solve(values)).squaredNorm();
+	};
+	const auto strains = [&](const BandPlane& plane, const std::vector<BandPlane>& beside) {
+		const BandField field(grains, beside);
+		return BandLikelihood::strainWeight * std::log(1 - field.excess(plane).taken / field.left()[1]);
+	};
+	const double none = left({}), one = left({along}), both = left({along, third});
+	EXPECT_NEAR(likelihood.unlikely(along), std::log(one / none) + strains(along, {}), 1e-8);
+	EXPECT_NEAR(likelihood.unlikely(third, {along}), std::log(both / one) + strains(third, {along}), 1e-8);
+}
+
+TEST(BandLikelihood, knowsTheNoiseAndFindsThePlane)
+{
+	Step step = someStep(6000);
+	Random random(9);
+	// vortices with wave lengths as in syntheticBands.py
+	constexpr double length = 0.01, size = 3e-5;
+	std::vector<Vec3> numbers, sizes;
+	std::vector<double> phases;
+	const auto normal = [&] { return std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * M_PI * random.uniform()); };
+	for (int k = 0; k < 60; ++k) {
+		numbers.push_back(Vec3(normal(), normal(), normal()) / length);
+		sizes.push_back(std::sqrt(2 / 60.) * size * Vec3(normal(), normal(), normal()));
+		phases.push_back(2 * M_PI * random.uniform());
+	}
+	for (std::size_t i = 0; i < step.x.size(); ++i)
+		for (int k = 0; k < 60; ++k) step.u[i] += std::cos(numbers[k].dot(step.x[i]) + phases[k]) * sizes[k];
+	const BandGrains grains(step.x, step.u, step.weights, step.strain);
+	const double inf = std::numeric_limits<double>::infinity();
+	const BandLimits limits{{0.3, -inf, -0.04, std::log(0.002)}, {1.4, inf, 0.04, std::log(0.03)}, {0.07, 0.1, 0.002, 0.25}};
+	const BandPlane start = refinedPlane(BandField(grains), limits, {0.9, 0.2, 0.004, std::log(0.015)}, 0.02, 200);
+	const BandLikelihood likelihood(grains, {start}, 0.0025);
+	EXPECT_NEAR(likelihood.noise().length, length, 0.0051);
+	// the vortices, five times that of single grains, are told from them, all but their shortest waves
+	constexpr double single = 2e-5 / 3.4641;
+	EXPECT_GT(likelihood.noise().single, 0.95 * single);
+	EXPECT_LT(likelihood.noise().single, 1.5 * single);
+	const BandPlane found = likelihood.refined({start}, limits, 1, 0.02, 200)[0];
+	EXPECT_NEAR(found[0], M_PI / 4, 0.003);
+	EXPECT_NEAR(found[1], 0, 0.005);
 }

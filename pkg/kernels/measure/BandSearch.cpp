@@ -3,45 +3,13 @@
 
 #include "kernels/base/Check.hpp"
 #include "kernels/base/NelderMead.hpp"
-
-#include <Eigen/Eigenvalues>
+#include "kernels/measure/BandFunctions.hpp"
 
 namespace hexmembrane {
 
 namespace {
 
-// Share of a function's square that others must leave for it to count as another one.
-constexpr double dependent = 1e-9;
-/// Functions by their coefficients, in two components, a row each.
-struct Functions {
-	Eigen::MatrixXd x, y;
-	explicit Functions(int columns) : x(0, columns), y(0, columns) {}
-	/// \param k, l the powers that its components are; -1: none
-	void add(int k, int l = -1)
-	{
-		x.conservativeResize(x.rows() + 1, Eigen::NoChange);
-		y.conservativeResize(y.rows() + 1, Eigen::NoChange);
-		x.bottomRows<1>().setZero();
-		y.bottomRows<1>().setZero();
-		if (k >= 0) x(x.rows() - 1, k) = 1;
-		if (l >= 0) y(y.rows() - 1, l) = 1;
-	}
-	/// Orthonormal functions of the same space, those that depend on others left out. \param gram inner products of the powers
-	void orthonormalise(const Eigen::MatrixXd& gram)
-	{
-		Eigen::MatrixXd products = x * gram * x.transpose() + y * gram * y.transpose();
-		const Eigen::VectorXd sizes = products.diagonal().cwiseSqrt().unaryExpr([](double size) { return size > 0 ? 1 / size : 0; });
-		products = sizes.asDiagonal() * products * sizes.asDiagonal();
-		const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(products);
-		const auto& values = solved.eigenvalues();
-		const Eigen::Index from = (values.array() <= dependent * values[values.size() - 1]).count(), kept = values.size() - from;
-		const Eigen::MatrixXd turn =
-		        values.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal() * solved.eigenvectors().rightCols(kept).transpose() * sizes.asDiagonal();
-		x = turn * x;
-		y = turn * y;
-	}
-};
-
+constexpr double dependent = BandFunctions::dependent;
 /// What the last of the powers adds to orthonormal functions, as one more of them. \param alongX whether it is the x component
 void append(Eigen::MatrixXd& x, Eigen::MatrixXd* y, const Eigen::MatrixXd& gram, bool alongX = true)
 {
@@ -109,18 +77,8 @@ void BandGrains::fit()
 	for (int a = 0, k = 0; a < measured; ++a)
 		for (int b = 0; b <= a; ++b, ++k) products(a, b) = products(b, a) = sums[k];
 	gram = products.topLeftCorner<all, all>();
-	constexpr int one = 0, z = 1, ax = powers, ay = 2 * powers;
-	Functions vertical(all), sideways(all), symmetrical(all);
-	for (int k = 0; k < powers; ++k) {
-		vertical.add(k);
-		sideways.add(ax + k, ay + k);
-		symmetrical.add(k);
-	}
-	for (int k : {ax, ay}) vertical.add(k);
-	for (int k : {one, ax, ay, z}) {
-		sideways.add(k);
-		sideways.add(-1, k);
-	}
+	BandFunctions vertical = BandFunctions::vertical(all), sideways = BandFunctions::sideways(all), symmetrical(all);
+	for (int k = 0; k < powers; ++k) symmetrical.add(k);
 	for (auto* functions : {&vertical, &sideways, &symmetrical}) functions->orthonormalise(gram);
 	up = vertical.x;
 	sideX = sideways.x;

@@ -22,6 +22,8 @@ public:
 	BandGrains(const std::vector<Vec3>& x, const std::vector<Vec3>& u, const std::vector<double>& weights, const std::vector<double>& strain);
 
 	std::size_t size() const { return count; }
+	/// Displacements and strains less what is fitted.
+	const BandColumns& numbers() const { return *columns; }
 	/// The part of each grain's strain that symmetric powers explain.
 	std::vector<double> symmetricStrain() const;
 

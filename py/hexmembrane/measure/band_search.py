@@ -42,7 +42,7 @@ class Search:
 	def __init__(self, x, u, weights, strain, diameter):
 		wide = 2 * float(np.sqrt((x[:, :2] ** 2).sum(axis=1).max()))
 		#: Largest thickness of a band [m].
-		self.thickest = max(THICKEST * wide, 2 * diameter)
+		self.thickest, self.diameter = max(THICKEST * wide, 2 * diameter), diameter
 		low = (math.radians(DIPS[0]), -math.inf, x[:, 2].min(), math.log(diameter))
 		high = (math.radians(DIPS[1]), math.inf, x[:, 2].max(), math.log(_FARTHER * self.thickest))
 		#: Lowest and highest plane, paces of the search.
@@ -57,7 +57,7 @@ class Search:
 
 	def _of(self, *arrays):
 		made = Search.__new__(Search)
-		made.thickest, made.limits = self.thickest, self.limits
+		made.thickest, made.diameter, made.limits = self.thickest, self.diameter, self.limits
 		made._take(*arrays)
 		return made
 
@@ -81,6 +81,10 @@ class Search:
 			for k, plane in enumerate(planes):
 				planes[k] = self.refined(plane, [*planes[:k], *planes[k + 1 :]], **precision)
 		return tuple(planes)
+
+	def likeliest(self, planes, **precision):
+		"""The planes by generalised least squares from where they are: grains also move in vortices, which bend a plane's step."""
+		return tuple(self.squares.likeliest(_rows(planes), self.limits, self.diameter, 3 if len(planes) > 1 else 1, **precision))
 
 	def slab(self, plane, beside=()):
 		"""The slab of uniform shear, parallel to the plane, whose displacement fits best what ``beside`` leave: (plane, jump (3,) [m])."""

@@ -7,8 +7,10 @@ A band is a plane with more shear than there is beside it, across which the disp
 * the displacement is such polynomials, an affine field and J erf(sqrt(6) s/t)/2.
 
 Both profiles are those of one shear. The plane is that which leaves the least product of the shares of both fields that the symmetric and affine parts do not
-explain, grains weighted with their volumes: the most likely one for normal noise. The thickness that is told is then that of the slab of uniform shear,
-parallel to the plane, whose displacement fits best: linear across the slab, constant beyond.
+explain, grains weighted with their volumes: the most likely one for normal noise of each grain alone. From these planes come index and verdict.
+
+Vortices of many grains bend a plane's step. So the planes of a band or a pair are then fitted by generalised least squares (pkg/kernels/measure/BandLikelihood.hpp).
+The thickness that is told is that of the slab of uniform shear, parallel to the plane, whose displacement fits best: linear across the slab, constant beyond.
 
 The localisation index is the share of the specimen's deviatoric strain that A exp(-6 s^2/t^2) stands for: what bands carry above all that is symmetric, 1 at
 most. Uniform strain and a barrel have about 0. There is a band when the index is INDEX_LIMIT or more, the jump explains EXPLAINED_LIMIT or more of the displacement
@@ -113,7 +115,7 @@ def find(positions, displacements, volumes, deviatoric, diameter, axis=None, rep
 	verdict = ("band", "pair")[len(found) - 1] if found else "barrel" if barrel >= BARREL_LIMIT else "none"
 	return Finding(
 		verdict,
-		tuple(_planeOf(plane, jump, centre) for plane, jump in step.slabs(planes)),
+		tuple(_planeOf(plane, jump, centre) for plane, jump in step.slabs(step.search.likeliest(found) if found else planes)),
 		min(1.0, sum(step.indices(planes))),
 		step.explained(planes),
 		barrel,
@@ -223,7 +225,7 @@ def _bootstrap(step, planes, replicates, seed):
 		found = again.search.together(planes, len(planes), tolerance=0.05, trials=60)
 		held += again.areBands(found)
 		row = [min(1.0, sum(again.indices(found))), again.explained(found)]
-		for (plane, _), was in zip(again.slabs(found), planes):
+		for (plane, _), was in zip(again.slabs(again.search.likeliest(found, tolerance=0.05, trials=60)), planes):
 			turn = math.degrees((plane[1] - was[1] + math.pi) % (2 * math.pi) - math.pi)
 			row += [math.degrees(plane[0]), math.degrees(was[1]) % 360 + turn, math.exp(plane[3])]
 		table.append(row)
