@@ -58,7 +58,7 @@ BandLikelihood::Profile BandLikelihood::profileOf(BandWaves::Row row) const
 	made.weighted = bandTimes(weight, row);
 	made.plain = std::move(row);
 	const Eigen::VectorXd sums = waves.sums(made.weighted);
-	made.waves = whitening * sums.tail<waveCount>();
+	made.waves = whitening.triangularView<Eigen::Lower>() * sums.tail<waveCount>();
 	made.powers = sums.head<powers>() - wavesOfPowers.transpose() * made.waves;
 	made.moved = Vec3(bandProduct(made.weighted, columns.ux), bandProduct(made.weighted, columns.uy), bandProduct(made.weighted, columns.uz)) -
 	             wavesMoved.transpose() * made.waves;

@@ -49,6 +49,20 @@ HEXMEMBRANE_WIDEST_LANES(void productsWidest(std::size_t count, const double* ro
                          productsBy<Lanes<width>>(count, row, factor, others, n, out))
 
 template <class V>
+HEXMEMBRANE_INLINE double productBy(std::size_t count, const double* a, const double* b)
+{
+	static_assert(8 % laneCount<V> == 0);
+	V sums[8 / laneCount<V>] = {};
+	for (std::size_t i = 0; i < count; i += 8)
+#pragma GCC unroll 4
+		for (int k = 0; k < 8 / laneCount<V>; ++k) sums[k] += load<V>(a + i + k * laneCount<V>) * load<V>(b + i + k * laneCount<V>);
+	for (int k = 1; k < 8 / laneCount<V>; ++k) sums[0] += sums[k];
+	return total(sums[0]);
+}
+
+HEXMEMBRANE_WIDEST_LANES(double productWidest(std::size_t count, const double* a, const double* b), productBy<Lanes<width>>(count, a, b))
+
+template <class V>
 HEXMEMBRANE_INLINE void stepsBy(const BandColumns& c, const BandPlane& plane, double* step, double* shape)
 {
 	const double scale = std::sqrt(6.) * std::exp(-plane[3]), offset = scale * plane[2];
@@ -154,12 +168,7 @@ BandSteps bandSteps(const BandColumns& columns, const BandPlane& plane)
 	return made;
 }
 
-double bandProduct(const BandWaves::Row& a, const BandWaves::Row& b)
-{
-	double sum = 0;
-	for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-	return sum;
-}
+double bandProduct(const BandWaves::Row& a, const BandWaves::Row& b) { return productWidest(a.size(), a.data(), b.data()); }
 
 BandWaves::Row bandTimes(const BandWaves::Row& a, const BandWaves::Row& b)
 {
