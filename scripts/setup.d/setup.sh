@@ -71,17 +71,26 @@ buildJobs() {
 # build FOLDER "TARGET..." OPTION...: builds the targets in FOLDER, configured with CMake's OPTIONs. ninja itself finds out what is out
 # of date.
 build() {
-	local folder=$1 targets
+	local folder=$1 targets said
 	read -ra targets <<<"$2"
 	shift 2
 	lock 8 "build-$(printf '%s' "$folder" | sha256sum | cut -c 1-12)"
 	configure "$folder" "$@"
+	said=$("${entry[@]}" ninja -C "$folder" build.ninja 2>&1) || die "cmake failed: $said"
+	nameNoPlace "$folder"
 	"${entry[@]}" ninja -C "$folder" -j "$(buildJobs)" "${targets[@]}" | tellBuild "$folder" || die "the build failed (see above)."
 	exec 8>&-
 }
 
+# nameNoPlace FOLDER: ninja's commands for the checkout's sources without the checkout's place, so that a copied checkout compiles nothing anew.
+nameNoPlace() {
+	local place
+	place=$(printf '%s' "$checkout" | sed 's/[][(){}.*+?^$|\\#]/\\&/g')
+	! grep -Eq "^  INCLUDES = .*$place(/|[[:space:]]|\$)" "$1/build.ninja" || sed -E -i "/^  INCLUDES = |^build [^:]*\.o: /s#$place(/|[[:space:]]|\$)#..\1#g" "$1/build.ninja"
+}
+
 # configure FOLDER OPTION...: by CMake, when the host, the checkout's place or the options are not those of FOLDER's stamp. FOLDER is
-# emptied then, so one without a stamp is refused: it is somebody's own.
+# emptied then, so one without a stamp is refused: it is somebody's own. One of a copied checkout keeps what was compiled.
 configure() {
 	local folder=$1 stamp=$1/.host log=$1/configure.log wanted
 	shift
@@ -92,8 +101,12 @@ configure() {
 		"fix: remove or rename it; for builds of your own use another folder: cmake -B build-own ..."
 	say "configuring ${folder##*/}/ ($hostId)"
 	mkdir -p "$folder" || die "$checkout is not writable: there is no place for the build."
-	echo unfinished >"$stamp"
-	find "$folder" -mindepth 1 ! -path "$stamp" -delete
+	if [[ $(cat "$stamp" 2>/dev/null) == "$hostId "*" $*" ]]; then # made for the same at another place
+		rm -f "$folder/CMakeCache.txt"
+	else
+		echo unfinished >"$stamp"
+		find "$folder" -mindepth 1 ! -path "$stamp" -delete
+	fi
 	"${entry[@]}" cmake -S "$checkout" -B "$folder" -G Ninja "$@" >"$log" 2>&1 || {
 		cat "$log" >&2
 		die "cmake failed (see above)."

@@ -113,6 +113,25 @@ def test_ownBuildFolderIsMadeAndKept(call, tmp_path):
 	assert "-DA=2" in call(CONFIGURE.replace("-DA=1", "-DA=2"), tmp_path)[1]
 
 
+def test_aCopiedCheckoutKeepsWhatWasCompiled(call, tmp_path):
+	"""The same build at another place is configured anew and not emptied; ninja's commands do not say where the checkout is, but for those that make them."""
+	(tmp_path / "build").mkdir()
+	first = call(CONFIGURE, tmp_path)[1]
+	(tmp_path / "build" / "mine.o").write_text("compiled")
+	stamp = tmp_path / "build" / ".host"
+	stamp.write_text(stamp.read_text().replace(str(tmp_path), "/another place"))
+	assert "cmake -S" in first and "mine.o" in call(CONFIGURE, tmp_path)[1]
+	stamp.write_text("another host" + stamp.read_text())
+	assert "mine.o" not in call(CONFIGURE, tmp_path)[1]
+	place = tmp_path / "a.b [c]"
+	place.mkdir()
+	lines = ["build x.o: CXX {0}/pkg/x.cpp || order", "  INCLUDES = -I{0} -I{0}/pkg -I{0}/build/made -isystem {0}s/headers", "build build.ninja: RERUN_CMAKE {0}/CMakeLists.txt", "  COMMAND = cmake -S{0}"]
+	(place / "build.ninja").write_text("\n".join(lines).format(place))
+	code, _, error = call('checkout=$1; nameNoPlace "$1"', place)
+	wanted = ["build x.o: CXX ../pkg/x.cpp || order", "  INCLUDES = -I.. -I../pkg -I../build/made -isystem {0}s/headers", *lines[2:]]
+	assert code == 0 and (place / "build.ninja").read_text() == "\n".join(wanted).format(place), error
+
+
 def test_somebodysBuildFolderIsRefused(call, tmp_path):
 	"""Files that the set-up has not made are not removed."""
 	(tmp_path / "build").mkdir()
