@@ -80,8 +80,8 @@ def best(folder):
 	return {key: float(row[key]) for key in row if key not in ("set", "log_likelihood", "weight", "failed")}
 
 
-def scaled(base, folder, wanted):
-	"""The tests of scaled grains; ``wanted``: number of grains -> packings."""
+def scaled(base, folder, wanted, slower=1.0):
+	"""The tests of scaled grains; ``wanted``: number of grains -> packings; ``slower``: what all velocities are divided by."""
 	values, runs = best(folder), []
 	first = derived(base, studyfile.nested(values))
 	diameter, inner = meanDiameter(first), values["specimen.porosity"] - layered(first, meanDiameter(first))
@@ -89,7 +89,7 @@ def scaled(base, folder, wanted):
 		d = diameter * (first.specimen.grains / grains) ** (1 / 3)
 		for k in range(packings):
 			own = {**values, "specimen.grains": grains, "specimen.porosity": inner + layered(first, d), studyfile.SEED: predict.FIRST_SEED + k}
-			own |= {"shear.velocity": base.shear.velocity * diameter / d}
+			own |= {"shear.velocity": base.shear.velocity * diameter / d / slower}
 			case = {"grains": grains, "across": 2 * first.specimen.radius / d, "packing": k}
 			runs.append(studyfile.Run(f"{grains}-{k}", case, predict.FIRST_SEED + k, derived(base, studyfile.nested(own))))
 	return studyfile.Study("scaled grains", ["grains"], runs, 2, {})
@@ -157,6 +157,7 @@ def main(argv):
 	parser.add_argument("--out", required=True, metavar="FOLDER")
 	parser.add_argument("--packings", type=int, metavar="N", help="membrane: tests a condition (8); grains: at most so many of each")
 	parser.add_argument("--grains", type=int, nargs="+", choices=tuple(GRAINS), help="these numbers of grains alone")
+	parser.add_argument("--slower", type=float, default=1.0, metavar="FACTOR", help="grains: velocities are divided by it")
 	parser.add_argument("--tables", action="store_true", help="run nothing")
 	given = parser.parse_args(argv)
 
@@ -165,7 +166,7 @@ def main(argv):
 		if given.what == "membrane":
 			wanted = membranes(base, given.calibration, given.packings or 8)
 		else:
-			wanted = scaled(base, given.calibration, {n: min(GRAINS[n], given.packings or GRAINS[n]) for n in given.grains or GRAINS})
+			wanted = scaled(base, given.calibration, {n: min(GRAINS[n], given.packings or GRAINS[n]) for n in given.grains or GRAINS}, given.slower)
 		out.mkdir(parents=True, exist_ok=True)
 		if not given.tables:
 			with sweep.lock(out):
