@@ -70,7 +70,7 @@ def test_cementedSand(O, tmp_path, runHere):
 		file = configure(tmp_path, cement=CEMENT, tier=tier, **wall)
 		code, said, errors = runHere(file, "--out", tmp_path / tier, "--from", tmp_path / "plain" / "consolidated.yade.gz")
 		assert code == 0, errors
-		assert " bonds between 200 grains" in said and "time step lowered" in said and " bonds hold, " in said
+		assert " bonds between 200 grains" in said and "time step lowered" in said and " bonds hold, " in errors
 		found = records.read(tmp_path / tier / "records.csv")
 		bonds, broken = found["cement_bonds"], found["cement_broken_tension"] + found["cement_broken_shear"]
 		assert broken[0] == 0 and 0 < broken[-1] < bonds[0] and (bonds + broken == bonds[0]).all()

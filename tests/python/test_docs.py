@@ -60,6 +60,12 @@ def test_everyLinkLeadsSomewhere(site):
 	assert len(pages) > 30 and wrong == []
 
 
+def test_lettersOfEquationsAreInEveryFont(site):
+	"""A single Greek letter is upright: as an italic one browsers look for it in fonts for mathematics."""
+	text = (site / "theory.html").read_text(encoding="utf-8")
+	assert text.count('<mi mathvariant="normal">') > 5 and not re.search(r"<mi(?! mathvariant)[^>]*>\s*[\u0391-\u03f5]\s*</mi>", text)
+
+
 def test_everyClassAndModuleIsThere(site):
 	text = "".join(path.read_text(encoding="utf-8") for path in [*site.glob("classes/*.html"), site / "python.html"])
 	names = [f"yade.wrapper.{name}" for room in ROOMS for name in declared(room)]
