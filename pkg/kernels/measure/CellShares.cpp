@@ -49,7 +49,7 @@ double ConvexPart::fractionBeyond(const std::vector<double>& side) const
 	double sum = 0;
 	for (std::size_t f = 0; f < faces.size(); f += faces[f] + 1) {
 		const int count = faces[f], *corner = &faces[f + 1];
-		Vec3 first, last;
+		Vec3 first = Vec3::Zero(), last = Vec3::Zero();
 		int met = 0;
 		const auto meet = [&](const Vec3& x) {
 			const Vec3 seen = x - apex;
