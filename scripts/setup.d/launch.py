@@ -44,7 +44,7 @@ def flushStreams():
 
 @contextlib.contextmanager
 def endedBySignals():
-	"""Within it a signal of _ENDING ends the process at once, with a shell's exit code for it; after it all are as before."""
+	"""Within it a signal of _ENDING ends the process at once, SIGHUP at its end, with a shell's exit code for it; after it all are as before."""
 
 	def end(number, frame):
 		with contextlib.suppress(OSError):
@@ -57,7 +57,12 @@ def endedBySignals():
 	for number in before:
 		signal.signal(number, end)
 	signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, signal.SIGTERM})
+	# YADE puts a handler of its own, which does nothing, in the place of that of SIGHUP: one that comes meanwhile waits
+	signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGHUP})
 	yield
+	for number in before:
+		signal.signal(number, end)
+	signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGHUP})
 	for number, handler in before.items():
 		signal.signal(number, handler)
 

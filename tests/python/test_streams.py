@@ -88,7 +88,7 @@ def test_whileYadeStarts(tmp_path, number, code, words):
 	"""At moments over the start: no C++ library sees an exception."""
 	script = tmp_path / "script.py"
 	script.write_text("import time\nprint('started', flush=True)\ntime.sleep(100)\n")
-	for moment in (0.1, 0.6):
+	for moment in (0.1, 0.3, 0.45, 0.6):
 		# as scripts/run does: Python itself, before it reads the launcher, would show a traceback
 		arguments = [*HEEDED, "--block-signal=INT,TERM", sys.executable, str(LAUNCHER), "1", str(script)]
 		process = subprocess.Popen(arguments, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
