@@ -35,7 +35,7 @@ TOLD = {
 #: What is drawn.
 DRAWN = ("peak_q", "proportional_limit", "end_q", "end_volumetric_strain")
 OWN = {"consolidation.pressure": "100000.0", "membrane.particleRadius": "0.00075"}
-SETTINGS = ("centre", "cube", "open loop", "equal springs", "damping", "fixed rings", "no bending", "axial by platen", "as the study")
+SETTINGS = ("centre", "cube", "open loop", "centre in an open loop", "equal springs", "damping", "fixed rings", "no bending", "axial by platen", "as the study")
 #: Comparison -> (sets, what names a case, what a case and its reference share, values of the reference, its set).
 COMPARISONS = {
 	"boundary": (("boundary",), ("boundary",), ("consolidation.pressure",), {"boundary": "membrane"}, "boundary"),
