@@ -54,7 +54,7 @@ def test_outputIsTheScriptsAlone(tmp_path):
 def test_interruptLetsTheScriptTidyUp(tmp_path):
 	script = tmp_path / "script.py"
 	script.write_text(
-		"import time\nprint('ready', flush=True)\ntry:\n\ttime.sleep(100)\nexcept KeyboardInterrupt:\n\tprint('tidied', flush=True)\n\traise SystemExit(7)\n"
+		"import time\ntry:\n\tprint('ready', flush=True)\n\ttime.sleep(100)\nexcept KeyboardInterrupt:\n\tprint('tidied', flush=True)\n\traise SystemExit(7)\n"
 	)
 	process = subprocess.Popen([sys.executable, str(LAUNCHER), "1", str(script)], stdout=subprocess.PIPE, text=True)
 	assert process.stdout.readline() == "ready\n"
