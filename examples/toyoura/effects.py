@@ -43,7 +43,7 @@ TOLERANCE = 0.15
 THIN_TUBE = (0.38, 0.24)
 #: Numbers of grains, and packings of each.
 GRAINS = {600: 8, 4000: 4, 14600: 3, 49000: 1}
-#: R/r of the membrane where it is not the calibration's: with its 1.2 one of 14,600 grains got through the sheet beside the upper platen.
+#: R/r of the membrane where it is not the calibration's.
 SIZE_RATIO = {14600: 0.8, 49000: 0.8}
 #: Measured: 7,045 grains in 40 x 80 mm, 15.4 d50 across, have 0.389 in all and 0.3591 inside (pkg/specimen/README.md).
 LAYER = (0.389 - 0.3591) / (4 / 15.4 + 2 / 30.8)
