@@ -18,6 +18,7 @@ chooseBrowser() {
 	fi
 }
 
+# Its path, nothing without one: whoever asks says what is missing then.
 nativeBrowser() { command -v chromium-headless-shell || command -v chromium || true; }
 
 # setUpBrowser FOLDER: makes it.

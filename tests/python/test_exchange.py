@@ -13,75 +13,17 @@ import pytest
 import standInItasca
 import tiers
 import yade
+from exchangeScene import DAMP, SPEED, cycles
 from hexmembrane.configuration import Config, ConfigError
 from hexmembrane.exchange import command, comparison, continuation, scenes, tables
-from hexmembrane.scene.builder import boxes, interactionLoop
 from hexmembrane.scene.platens import platen
 from tinyTest import TINY
 from yade import utils
 
 ROOT = pathlib.Path(__file__).parents[2]
 EXPORTER = ROOT / "scripts" / "pfc.d" / "export_pfc.py"
-_SPEED, _STEPS, _DAMP = 0.05, 900, 0.7
 #: Direct stiffness with rolling resistance; a modulus with contact bonds; parallel bonds.
 ROLLING, BONDED, CEMENTED = "rolling", "bonded", "cemented"
-
-
-def collide(O, springs, bonds, cement=False):
-	"""Balls that are pressed together between two platens, in the reference tier; bonded while they move, where they are cemented, across gaps too."""
-	O.reset()
-	strength = 5.0 if bonds else 0.0
-	O.materials.append(yade.LinearMat(friction=0.4, rollingFriction=0.0 if bonds or cement else 0.3, density=2650, cbTensile=strength, cbShear=strength, label="grain", **springs))
-	O.materials.append(yade.LinearMat(kn=1e6, ks=5e5, friction=0.2, density=2650, label="platen"))
-	random = numpy.random.default_rng(1)
-	for place in numpy.argwhere(numpy.ones((4, 4, 4))):
-		radius = 1e-3 * random.uniform(0.8, 1.0)
-		ball = O.bodies.append(utils.sphere(tuple(1.9e-3 * place + random.uniform(-5e-5, 5e-5, 3)), radius, material="grain"))
-		O.bodies[ball].state.vel = tuple(_SPEED * (1.5 - place) + random.uniform(-1e-2, 1e-2, 3))
-		O.bodies[ball].state.angVel = tuple(random.uniform(-5, 5, 3))
-	for height, facing in ((-0.95e-3, 1), (6.6e-3, -1)):
-		wall = O.bodies.append(platen((2.8e-3, 2.8e-3, height), 2e-2, 5e-3, facing=facing, material="platen"))
-		O.bodies[wall].state.vel = (0, 0, _SPEED * facing)
-	loop = interactionLoop()
-	loop.physDispatcher.functors[0].bondNewContacts = bonds
-	collider = yade.InsertionSortCollider(boxes(), verletDist=1e-4)
-	O.engines = [yade.ForceResetter(), collider, loop, yade.NewtonIntegrator(damping=_DAMP)]
-	O.dt = 4e-6
-	for step in range(_STEPS):
-		if cement and step == _STEPS // 2:
-			cementWith(O, loop)
-		O.step()
-	loop.physDispatcher.functors[0].bondNewContacts = False
-
-
-def cementWith(O, loop):
-	"""Parallel bonds of two strengths, some of which break."""
-	kinds = [yade.GrainBonds(emod=2e7, kratio=2, radiusMultiplier=0.8, tensileStrength=2e6, cohesion=1e6, frictionAngle=0.5, momentFactor=0.3)]
-	kinds.append(yade.GrainBonds(kn=1e10, ks=4e9, tensileStrength=math.inf, cohesion=math.inf))
-	assert kinds[0].bond(range(32), gap=4e-5) > 10 and kinds[1].bond(range(32, 64), gap=4e-5) > 10
-	before = O.engines.index(loop) + 1
-	O.engines = [*O.engines[:before], *kinds, *O.engines[before:]]
-
-
-def _flatten(O):
-	"""Shear forces have no part along the normal, as PFC's: the law lets a load that turns keep one of second order."""
-	for contact in O.interactions:
-		contact.phys.shearForce -= contact.phys.shearForce.dot(contact.geom.normal) * contact.geom.normal
-
-
-def cycle(O, folder, number):
-	"""One step in PFC's order, the motion first; the tables as they are then."""
-	engines = list(O.engines)
-	O.engines = [yade.NewtonIntegrator(damping=engines[-1].damping, warnNoForceReset=False)]
-	O.step()
-	O.engines = engines[:-1]
-	O.step()
-	O.engines = engines
-	_flatten(O)
-	folder.mkdir()
-	scenes.write(folder, moved=False)
-	for path in folder.iterdir():  # YADE's number has gone up by two
-		path.write_text(path.read_text().replace(f"cycle={O.iter} ", f"cycle={number} "))
 
 
 @pytest.fixture(scope="module", params=[ROLLING, BONDED, CEMENTED])
@@ -91,15 +33,10 @@ def exported(request, tmp_path_factory):
 
 	folder = tmp_path_factory.mktemp("exported")
 	bonds = request.param == BONDED
-	collide(O, {"emod": 1e8, "kratio": 2} if bonds else {"kn": 2e5, "ks": 1e5}, bonds, request.param == CEMENTED)
+	springs = {"emod": 1e8, "kratio": 2} if bonds else {"kn": 2e5, "ks": 1e5}
+	cycles(O, springs, bonds, request.param == CEMENTED, (folder / "1", folder / "2"))
 	engines = list(O.engines)
-	_flatten(O)
-	O.engines = engines[:-1]
-	O.step()
-	O.engines = engines
-	for number in (1, 2):
-		cycle(O, folder / str(number), number)
-	O.engines = [yade.NewtonIntegrator(damping=_DAMP, warnNoForceReset=False)]
+	O.engines = [yade.NewtonIntegrator(damping=DAMP, warnNoForceReset=False)]
 	O.step()
 	O.engines = engines
 	motions = [motion(O)]
@@ -108,19 +45,6 @@ def exported(request, tmp_path_factory):
 	motions.append(motion(O))
 	O.reset()
 	return folder / "1", folder / "2", motions
-
-
-def states(O, first, second):
-	"""Tables of cemented balls in two folders, a cycle apart; leaves the scene empty."""
-	collide(O, {"kn": 2e5, "ks": 1e5}, False, True)
-	engines = list(O.engines)
-	_flatten(O)
-	O.engines = engines[:-1]
-	O.step()
-	O.engines = engines
-	for number, folder in enumerate((first, second), 1):
-		cycle(O, folder, number)
-	O.reset()
 
 
 def motion(O):
@@ -230,13 +154,13 @@ def test_tablesOfEitherTier(O, tier, tmp_path):
 def test_goesOnFromTheVeryState(O, exported):
 	"""Balls, contacts, bonds and walls of the tables go on as those that the tables were written of."""
 	state = tables.read(exported[1])
-	bodies = continuation.resume(state, damping=_DAMP)
+	bodies = continuation.resume(state, damping=DAMP)
 	assert O.interactions.countReal() == len(state.contacts) and list(bodies.values()) == list(range(64))
-	size = numpy.array(3 * [1e-3] + 3 * [_SPEED])
+	size = numpy.array(3 * [1e-3] + 3 * [SPEED])
 	assert (abs(motion(O) - exported[2][0]) / size).max() < 1e-5
 	for _ in range(100):
 		O.step()
-	assert (abs(motion(O) - exported[2][1]) / size).max() < 1e-2  # each step turns the loads: see _flatten
+	assert (abs(motion(O) - exported[2][1]) / size).max() < 1e-2  # each step turns the loads: see exchangeScene
 	assert O.materials["grain"].friction == pytest.approx(0.4) and O.materials["wall-64"].kn == pytest.approx(1e6)
 
 
@@ -308,7 +232,7 @@ def test_bondsComeBack(O, exported, tmp_path):
 	bonds = state.bonds
 	assert 20 < len(bonds) and {*state.contacts["model"]} == {"linear", tables.PARALLEL} and (bonds["pb_ten"] == math.inf).any() and (bonds["pb_fa"] > 0).any()
 	assert (numpy.linalg.norm(bonds.vectors("pb_m"), axis=1) > 0).all() and not set(bonds["id"]) <= set(state.contacts["id"])
-	continuation.resume(state, damping=_DAMP)
+	continuation.resume(state, damping=DAMP)
 	scenes.write(tmp_path)
 	again = tables.read(tmp_path)
 	for name, letter in (("contacts", "f"), ("bonds", "pb_f"), ("bonds", "pb_m")):

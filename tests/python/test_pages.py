@@ -18,8 +18,8 @@ import signal
 import subprocess
 import sys
 
+import exchangeScene
 import pytest
-import test_exchange
 import test_scripts
 import yaml
 from hexmembrane.configuration import Config
@@ -118,7 +118,7 @@ def place(tmp_path_factory):
 		assert code == 0, said
 		for name in ("out/a", "out/b", "out/c", "out/study", "DIR"):
 			shutil.copytree("out/quick", name)
-		test_exchange.states(O, folder / "state", folder / "state-one-cycle-later")
+		exchangeScene.states(O, folder / "state", folder / "state-one-cycle-later")
 	return folder
 
 
