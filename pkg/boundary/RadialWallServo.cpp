@@ -40,6 +40,7 @@ void RadialWallServo::requireSettings() const
 {
 	hexmembrane::requirePositive("RadialWallServo.stress", stress, "Pa");
 	hexmembrane::requirePositive("RadialWallServo.maxVelocity", maxVelocity, "m/s");
+	if (!math::isnan(maxRetreat)) hexmembrane::requirePositive("RadialWallServo.maxRetreat", maxRetreat, "m/s");
 	hexmembrane::requireIn(hexmembrane::shared::servo_damping, "RadialWallServo.damping", damping, "1");
 	hexmembrane::requireIn(hexmembrane::shared::servo_tolerance, "RadialWallServo.tolerance", tolerance, "1");
 	if (!math::isnan(timeLimit)) hexmembrane::requirePositive("RadialWallServo.timeLimit", timeLimit, "s");
@@ -67,9 +68,10 @@ void RadialWallServo::requireReached(Real target)
 	if (target != phaseTarget) {
 		phaseTarget = target;
 		phaseTime = 0;
-		phaseSettled = false;
+		phaseSettled = phaseReached = false;
 	}
 	phaseSettled |= settled;
+	phaseReached |= radialStress >= stress;
 	if (!phaseSettled && phaseTime > timeLimit)
 		throw std::runtime_error("RadialWallServo.timeLimit = " + hexmembrane::formatNumber(timeLimit) + ": the wall carries " +
 		                         hexmembrane::formatNumber(radialStress) + " Pa of " + hexmembrane::formatNumber(stress) +
@@ -112,10 +114,15 @@ void RadialWallServo::step(StepView& view)
 
 	const Real dt = scene->dt, target = stress * area;
 	if (stiffness > 0) {
-		const auto servo = hexmembrane::makePlatenServo(stiffness, dt, target, damping, NaN, maxVelocity);
-		velocity = hexmembrane::servoVelocity(servo, velocity, dt, target, force);
+		auto servo = hexmembrane::makePlatenServo(stiffness, dt, target, damping, NaN, maxVelocity);
+		if (!math::isnan(maxRetreat)) servo.maxRetreat = maxRetreat;
+		velocity = hexmembrane::servoVelocity(servo, velocity, dt, target, force, flow);
+		flow = phaseReached ? hexmembrane::servoFlow(flow, velocity) : 0; // what the wall meets on its way, it meets with its whole dashpot
+		atLimit = phaseSettled && (velocity <= -servo.maxRetreat || velocity >= servo.maxVelocity);
 	} else {
 		velocity = maxVelocity;
+		flow = 0;
+		atLimit = false;
 	}
 	// the wall moves when the integrator moves the spheres: positions of one instant
 	shape.radius -= velocity * dt;

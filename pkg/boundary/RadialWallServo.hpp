@@ -35,7 +35,9 @@ private:
 		"The radius is the one degree of freedom of a mass m on a dashpot c, pushed inwards by 2 π R h σ and back by the specimen, "
 		"with the recipe of PlatenDrive: m = 4 K Δt², c = 2 ζ sqrt(K m) with K the summed stiffness of the wall's contacts, "
 		"at most 1 % of the target a step. Stable for any stiffness. While nothing touches it the wall closes at maxVelocity. "
-		"A wall that has to keep moving carries 4 ζ K Δt v less than the target.\n\n"
+		"Once it has reached its target the dashpot lets the mean velocity of the last 100 steps pass, so that a wall that keeps moving carries its target all the same. "
+		"A specimen of stiff grains that is sheared fast pushes the wall outwards faster than by 1 % of the target a step: give maxRetreat then. "
+		"A wall that would have to move faster still does not carry its target: see atLimit.\n\n"
 		"With O.trackEnergy the work is booked as 'wallWork', negative like YADE's other work from outside. All state is saved.\n\n"
 		"Errors: a missing or erased wall or platen, a body of another shape, values that are missing or have the wrong sign, "
 		"contacts that do not tell their stiffness, a target not reached within timeLimit. Example::\n\n"
@@ -47,12 +49,15 @@ private:
 		((Real,height,NaN,,"Height of the specimen [m], when no platens are given."))
 		((Real,damping,HEXMEMBRANE_SERVO_DAMPING_DEFAULT,,"Damping ratio ζ, " HEXMEMBRANE_SERVO_DAMPING_RANGE "; 1 is critical for the contacts alone."))
 		((Real,maxVelocity,NaN,,"Largest velocity of the radius [m/s], and the one of the approach. Required."))
+		((Real,maxRetreat,NaN,,"Largest velocity of the radius outwards [m/s]; NaN: the limit inwards, maxVelocity and 1 % of the target a step."))
 		((Real,tolerance,HEXMEMBRANE_SERVO_TOLERANCE_DEFAULT,,"Relative error of the stress, " HEXMEMBRANE_SERVO_TOLERANCE_RANGE
 			", below which the servo counts as settled."))
 		((Real,timeLimit,NaN,,
 			"Time [s] after the start or a change of the target within which the servo must have settled once, else the run stops with an error; NaN: "
 			"none."))
 		((Real,velocity,0,Attr::readonly,"Velocity of the radius, positive inwards [m/s]."))
+		((Real,flow,0,Attr::readonly,"Mean velocity of the last 100 steps [m/s], positive inwards, that the dashpot lets pass; 0 until the target was reached."))
+		((bool,atLimit,false,Attr::readonly,"Whether the wall had reached its stress and now moves at a limit of its velocity, so that the stress may be another than asked for."))
 		((Real,radialStress,NaN,Attr::readonly,"Mean radial stress at the last step [Pa], compression positive."))
 		((Real,stiffness,0,Attr::readonly,"Summed normal stiffness of the wall's contacts [N/m]."))
 		((bool,settled,false,Attr::readonly,"Whether the stress is within the tolerance."))
@@ -63,6 +68,7 @@ private:
 		((Real,phaseTarget,NaN,Attr::hidden,""))
 		((Real,phaseTime,0,Attr::hidden,""))
 		((bool,phaseSettled,false,Attr::hidden,""))
+		((bool,phaseReached,false,Attr::hidden,""))
 		((int,energyIndex,-1,(Attr::hidden|Attr::noSave),""))
 	);
 	// clang-format on

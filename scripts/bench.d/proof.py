@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Whether error budgets hold: tests on packings that the study of accuracy did not use, at settings chosen by ``accuracy``, against a slow test of each packing.
 
-	accuracy.py prove FOLDER [--processes N]
+	accuracy.py prove FOLDER [--boundary wall] [--processes N]
 
 The slow test of a packing has the references of the knobs that cost accuracy, and the base's of those that were found to cost none (step, R/r). FOLDER
 keeps one folder a run and proof.csv; an interrupted proof goes on.
@@ -27,12 +27,13 @@ SLOW = {"shear": {"velocity": 0.015}, "specimen": {"emod": 3000 * 4e5 / math.pi}
 HEADER = ("seed", "accuracy", "quantity", "slow test", "test", "error", "budget", "held")
 
 
-def jobs(seeds=SEEDS):
-	"""Names of runs -> their configurations; the slow ones first."""
-	made = {f"slow, seed {seed}": survey.configuration(knobs.COMMON, SLOW, {"specimen": {"seed": seed}}) for seed in seeds}
+def jobs(boundary="membrane", seeds=SEEDS):
+	"""Names of runs in a lateral boundary -> their configurations; the slow ones first."""
+	common = survey.configuration(knobs.COMMON, {"boundary": boundary})
+	made = {f"slow, seed {seed}": survey.configuration(common, SLOW, {"specimen": {"seed": seed}}) for seed in seeds}
 	for seed in seeds:
 		for share in ACCURACIES:
-			keys = survey.configuration(knobs.COMMON, {"accuracy": share, "specimen": {"seed": seed}})
+			keys = survey.configuration(common, {"accuracy": share, "specimen": {"seed": seed}})
 			for section, name in OPEN:
 				del keys[section][name]
 			made[f"{share}, seed {seed}"] = keys
@@ -59,8 +60,9 @@ def rows(folder, seeds=SEEDS):
 def main(argv):
 	parser = argparse.ArgumentParser(prog="accuracy prove", description="Whether error budgets hold.")
 	survey.addOptions(parser)
+	parser.add_argument("--boundary", choices=("membrane", "wall"), default="membrane", help="lateral boundary of the tests; each has a folder of its own")
 	arguments = parser.parse_args(argv)
-	wanted = {name: keys for name, keys in jobs().items() if arguments.only in name}
+	wanted = {name: keys for name, keys in jobs(arguments.boundary).items() if arguments.only in name}
 	survey.runAll(
 		list(wanted), lambda name: (name, *survey.run(name, wanted[name], arguments.folder)[:2]), arguments.folder, arguments.processes, lambda done: None
 	)

@@ -38,12 +38,12 @@ TEST(PlatenServo, RampIsSmoothAndComplete)
 
 TEST(PlatenServo, FreePlatenFollowsNewton)
 {
-	const PlatenServo servo{2, 0, 1e9};
+	const PlatenServo servo{2, 0, 1e9, 1e9};
 	EXPECT_NEAR(servoVelocity(servo, 0.3, 0.1, 5, 1), 0.3 + 0.1 * 4 / 2, 1e-15);
 	// With the dashpot alone the velocity falls by 1/(1 + c dt/m) a step, for any c, and never turns round.
-	for (const double c : {0.1, 20., 1e6}) EXPECT_NEAR(servoVelocity({2, c, 1e9}, 0.3, 0.1, 1, 1), 0.3 / (1 + c * 0.1 / 2), 1e-15);
-	EXPECT_EQ(servoVelocity({2, 0, 0.25}, 0.3, 0.1, 5, 1), 0.25);
-	EXPECT_EQ(servoVelocity({2, 0, 0.25}, -0.3, 0.1, 1, 5), -0.25);
+	for (const double c : {0.1, 20., 1e6}) EXPECT_NEAR(servoVelocity({2, c, 1e9, 1e9}, 0.3, 0.1, 1, 1), 0.3 / (1 + c * 0.1 / 2), 1e-15);
+	EXPECT_EQ(servoVelocity({2, 0, 0.25, 0.2}, 0.3, 0.1, 5, 1), 0.25);
+	EXPECT_EQ(servoVelocity({2, 0, 0.25, 0.2}, -0.3, 0.1, 1, 5), -0.2);
 }
 
 TEST(PlatenServo, LimitsOfTheRecipe)
@@ -52,6 +52,7 @@ TEST(PlatenServo, LimitsOfTheRecipe)
 	EXPECT_NEAR(servo.mass, 4e-4, 1e-18);
 	EXPECT_NEAR(servo.viscosity, 2 * std::sqrt(1e6 * 4e-4), 1e-12);
 	EXPECT_NEAR(servo.maxVelocity * 1e-5 * 1e6, 1, 1e-12); // 1 % of the target a step
+	EXPECT_EQ(servo.maxRetreat, servo.maxVelocity);
 	EXPECT_EQ(makePlatenServo(1e6, 1e-5, 100, 1, 0.5, nan).mass, 0.5);
 	EXPECT_EQ(makePlatenServo(1e6, 1e-5, 100, 1, nan, 0.01).maxVelocity, 0.01);
 	EXPECT_NEAR(makePlatenServo(1e6, 1e-5, 100, 1, nan, 1e3).maxVelocity, 0.1, 1e-15);
@@ -62,6 +63,9 @@ struct Chain {
 	double stiffness, mass, dt, gap;
 	std::vector<double> x, v;              // grains from the bottom; displacement down is negative
 	double platen = 0, platenVelocity = 0; // downwards positive
+	double floor = 0, floorVelocity = 0;   // upwards positive
+	bool flows = false;                    // whether the dashpot lets the mean velocity pass
+	double flow = 0;
 
 	Chain(int grains, double k, double m, double step, double initialGap)
 	    : stiffness(k), mass(m), dt(step), gap(initialGap), x(static_cast<size_t>(grains), 0.), v(static_cast<size_t>(grains), 0.)
@@ -74,7 +78,7 @@ struct Chain {
 	{
 		const size_t n = x.size();
 		std::vector<double> force(n + 1);
-		force[0] = contact(-x[0]);
+		force[0] = contact(floor - x[0]);
 		for (size_t i = 1; i < n; i++) force[i] = contact(x[i - 1] - x[i]);
 		force[n] = contact(platen - gap + x[n - 1]);
 		for (size_t i = 0; i < n; i++) {
@@ -85,9 +89,12 @@ struct Chain {
 			v[i] += dt * f / mass;
 			x[i] += dt * v[i];
 		}
-		const PlatenServo servo = makePlatenServo(stiffness, dt, target, 1, nan, nan);
-		platenVelocity = servoVelocity(servo, platenVelocity, dt, target, force[n]);
+		PlatenServo servo = makePlatenServo(stiffness, dt, target, 1, nan, nan);
+		if (floorVelocity > 0) servo.maxRetreat = 1e9;
+		platenVelocity = servoVelocity(servo, platenVelocity, dt, target, force[n], flow);
+		if (flows) flow = servoFlow(flow, platenVelocity);
 		platen += dt * platenVelocity;
+		floor += dt * floorVelocity;
 		return force[n];
 	}
 };
@@ -108,6 +115,29 @@ TEST(PlatenServo, SettlesWithoutOvershootForAnyStiffness)
 				EXPECT_NEAR(force, target, 1e-6) << stiffness << " N/m, " << grains << " grains, " << safety;
 				EXPECT_LT(peak, 1.02 * target) << stiffness << " N/m, " << grains << " grains, " << safety;
 			}
+}
+
+// A specimen that flows: the floor pushes the chain against the servo at a constant speed, at which the dashpot alone takes a fifth of the target.
+TEST(PlatenServo, CarriesItsTargetWhileItHasToMove)
+{
+	for (const double stiffness : {1e3, 1e7})
+		for (const int grains : {1, 5, 40}) {
+			const double mass = 1e-5, dt = 0.3 * std::sqrt(mass / stiffness), target = 1;
+			const PlatenServo servo = makePlatenServo(stiffness, dt, target, 1, nan, nan);
+			for (const bool flows : {false, true}) {
+				Chain chain(grains, stiffness, mass, dt, 5 * target / stiffness);
+				for (int i = 0; i < 40000; i++) chain.step(target);
+				chain.flows = flows;
+				chain.floorVelocity = 0.2 * target / servo.viscosity;
+				double force = 0, largest = 0;
+				for (int i = 0; i < 40000; i++) {
+					force = chain.step(target);
+					if (i > 10000) largest = std::max(largest, std::abs(force / target - 1));
+				}
+				EXPECT_NEAR(largest, flows ? 0 : 0.2, 1e-3) << stiffness << " N/m, " << grains << " grains";
+				EXPECT_NEAR(chain.platenVelocity, -chain.floorVelocity, 1e-3 * chain.floorVelocity);
+			}
+		}
 }
 
 } // namespace

@@ -196,7 +196,7 @@ def test_proof(part, tmp_path, monkeypatch):
 	proof, survey = part("proof"), part("survey")
 	jobs = proof.jobs()
 	assert len(jobs) == 40 and not {keys["specimen"]["seed"] for keys in jobs.values()} & set(range(7, 15))
-	for keys in jobs.values():
+	for keys in (*jobs.values(), *proof.jobs("wall").values()):
 		Config.of(keys)
 	peaks = {survey.place(f"{name}, seed 101", tmp_path): peak for name, peak in zip(("slow", *proof.ACCURACIES), (1.0e5, 1.04e5, 1.1e5, 0.9e5))}
 	monkeypatch.setattr(proof.records, "read", lambda path: records(61, 0.15, lambda strain: numpy.full(len(strain), peaks[path.parent])))

@@ -60,6 +60,17 @@ def test_energyBalance(whole):
 	assert table["work_boundary"][-1] > 0.1
 
 
+def test_stiffGrainsShearedFast(tmp_path, runHere):
+	"""The wall follows where a hundredth of the target a step is too slow: grains of kn/(p d) = 3000 at an inertial number near 1e-3."""
+	path = configure(tmp_path, boundary="wall", specimen={"emod": 4e8}, shear={"strain": 0.03, "velocity": 0.1}, output={"vtkEvery": 0})
+	code, _, errors = runHere(path, "--out", tmp_path / "out")
+	assert code == 0, errors
+	table = records.read(tmp_path / "out" / "records.csv")
+	shear = numpy.array([stage == "shear" for stage in table["stage"]])
+	assert abs(table["sigma3_distance"][shear]).max() < 0.05 and (table["loops_saturated"][shear] == 0).all()
+	assert table["q"][shear].max() < 1e6
+
+
 def test_samePackingAsWithAMembrane(whole, tmp_path, runHere):
 	code, _, errors = runHere(configure(tmp_path), "--out", tmp_path / "out", "--until", "specimen")
 	assert code == 0, errors

@@ -15,11 +15,13 @@ inline double rampWeight(double elapsed, double duration)
 	return 0.5 * (1 - std::cos(3.14159265358979323846 * elapsed / duration));
 }
 
-/// What the platen of a stress servo is: a body of `mass` (kg) on a dashpot of `viscosity` (N s/m), never faster than `maxVelocity` (m/s).
+/// What the platen of a stress servo is: a body of `mass` (kg) on a dashpot of `viscosity` (N s/m), never faster into the specimen than `maxVelocity` and out of
+/// it than `maxRetreat` (m/s).
 struct PlatenServo {
 	double mass;
 	double viscosity;
 	double maxVelocity;
+	double maxRetreat;
 };
 
 /// Largest share of the target force by which the contact force may change in one step.
@@ -34,18 +36,30 @@ constexpr double servoMassFactor = 4;
 ///                                        sqrt(2K/m) (Gershgorin), a factor 2.8 below the leapfrog limit 2/dt, whatever K is.
 ///   viscosity    c = 2 ratio sqrt(K m)   critical for the contacts alone; the specimen behind them is softer, and more than critically damped.
 ///   maxVelocity  servoForcePerStep * target/(K dt), so that an impact cannot overshoot: what the platen meets, it meets over 100 steps or more.
+///   maxRetreat   the same
 inline PlatenServo makePlatenServo(double stiffness, double dt, double target, double dampingRatio, double givenMass, double givenLimit)
 {
 	const double mass = std::isnan(givenMass) ? servoMassFactor * stiffness * dt * dt : givenMass;
 	const double limit = servoForcePerStep * target / (stiffness * dt);
-	return {mass, 2 * dampingRatio * std::sqrt(stiffness * mass), std::isnan(givenLimit) ? limit : std::min(limit, givenLimit)};
+	const double fastest = std::isnan(givenLimit) ? limit : std::min(limit, givenLimit);
+	return {mass, 2 * dampingRatio * std::sqrt(stiffness * mass), fastest, fastest};
 }
 
-/// Velocity of the servo platen after a step (m/s, positive into the specimen): m dv/dt = wanted - measured - c v, the last term implicit (stable for any c).
-inline double servoVelocity(const PlatenServo& servo, double velocity, double dt, double wanted, double measured)
+/// Velocity of the servo platen after a step (m/s, positive into the specimen): m dv/dt = wanted - measured - c (v - flow), the last term implicit (stable for
+/// any c). `flow` (m/s) is the velocity that the dashpot lets pass; 0: none, and a platen that has to keep moving at v carries c v less than wanted.
+inline double servoVelocity(const PlatenServo& servo, double velocity, double dt, double wanted, double measured, double flow = 0)
 {
-	const double next = (servo.mass * velocity + dt * (wanted - measured)) / (servo.mass + dt * servo.viscosity);
-	return std::clamp(next, -servo.maxVelocity, servo.maxVelocity);
+	const double drag = dt * servo.viscosity;
+	const double next = (servo.mass * velocity + dt * (wanted - measured) + drag * flow) / (servo.mass + drag);
+	return std::clamp(next, -servo.maxRetreat, servo.maxVelocity);
 }
+
+/// Steps over which a flow follows a velocity.
+constexpr double servoFlowSteps = 100;
+
+/// The flow of a servo after a step (m/s): the mean velocity of the last servoFlowSteps, so that a steady motion costs no force. Against a specimen of any
+/// stiffness k the servo stays stable: m T s^3 + (m + c T) s^2 + k T s + k, T = servoFlowSteps dt, meets Routh's condition c T^2 > 0. Its slow oscillation
+/// has the damping ratio sqrt(k T/c)/2.
+inline double servoFlow(double flow, double velocity) { return flow + (velocity - flow) / servoFlowSteps; }
 
 } // namespace hexmembrane

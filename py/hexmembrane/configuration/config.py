@@ -158,7 +158,7 @@ class Wall:
 	)
 	tolerance: float = shared("servo_tolerance", "relative error of the radial stress below which the servo has reached its target", high=0.5)
 	maxVelocity: Optional[float] = key(
-		None, "largest velocity of the radius; none: 1e-3 radius/(d sqrt(rho/pressure)), an inertial number of 1e-3", "m/s", low=0, openLow=True
+		None, "largest velocity of the radius; none: 1e-3 radius/(d sqrt(rho/pressure)), an inertial number of 1e-3, and outwards in shear at least 4 times what constant volume takes", "m/s", low=0, openLow=True
 	)
 
 	def check(self, path):

@@ -186,15 +186,14 @@ class TriaxialTest:
 
 	def tellSaturated(self, say):
 		"""Tell of each closed loop that has come to its limit, once. :param say: takes lines of the log."""
-		for loop, factor in self.scene.saturated().items():
+		for loop, (state, fix) in self.scene.saturated().items():
 			if loop in self._told:
 				continue
 			self._told.add(loop)
 			row = self.lastRow
 			say(
-				f"WARNING: {loop} stands at its limit, {factor:.4g} times what is asked for, in {self.stage} at {100 * row['axial_strain']:.2f} %: "
-				f"{1e-3 * row['sigma3_transmitted_group3']:.4g} kPa of {1e-3 * row['sigma3_target']:.4g} kPa arrive; fix: a larger maxFactor, or a membrane that carries less "
-				"(young, thickness)"
+				f"WARNING: {loop} {state}, in {self.stage} at {100 * row['axial_strain']:.2f} %: "
+				f"{1e-3 * row['sigma3_transmitted_group3']:.4g} kPa of {1e-3 * row['sigma3_target']:.4g} kPa arrive; fix: {fix}"
 			)
 
 	def strain(self):

@@ -84,7 +84,10 @@ class Straining(_Sheared):
 
 	def begin(self):
 		self._leaveConsolidation()
-		ramp = 2 * self.config.shear.rampStrain * self.test.reference.height / self.planned.speed
+		height = self.test.reference.height
+		if self.config.wall.maxVelocity is None and self.planned.direction > 0:
+			self.test.scene.lateralBoundary.allowStraining(self.planned.speed / height)
+		ramp = 2 * self.config.shear.rampStrain * height / self.planned.speed
 		self._drive(self.planned.velocities, ramp)
 
 	def nominal(self):

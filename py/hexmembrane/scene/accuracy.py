@@ -31,6 +31,8 @@ PEAK, VOLUME = QUANTITIES = "peak q", "volumetric strain at 15 %"
 GRAINS = 1200
 #: The measurements: ``scripts/bench accuracy publish``.
 FILE = pathlib.Path(__file__).with_name("accuracy.csv")
+#: How far a level may lie beyond the last one measured: chosen values are rounded to four digits.
+_ROUNDED = 1e-3
 #: Parts that the way between two measured levels is divided into when settings are chosen.
 _BETWEEN = 2
 
@@ -109,7 +111,7 @@ class Curve:
 		return numpy.exp(numpy.interp(numpy.log(x), numpy.log(self.x), numpy.log(self.time)))
 
 	def covers(self, x):
-		return self.x[0] * (1 - 1e-9) <= x <= self.x[-1] * (1 + 1e-9)
+		return self.x[0] * (1 - _ROUNDED) <= x <= self.x[-1] * (1 + _ROUNDED)
 
 
 @dataclasses.dataclass

@@ -13,7 +13,7 @@ import yade
 from yade import O
 
 from hexmembrane.scene import geometry, timestep
-from hexmembrane.scene.lateral_boundary import BoundaryParts, LateralBoundary, Surface, optionalEngine, singleEngine
+from hexmembrane.scene.lateral_boundary import BoundaryParts, LateralBoundary, Surface, atFactor, optionalEngine, singleEngine
 from hexmembrane.scene.membrane_loads import endHeights, endRows, membraneLoads
 from hexmembrane.scene.sheet_state import sheetState
 
@@ -292,7 +292,7 @@ class FlexibleMembrane(LateralBoundary):
 	def saturated(self):
 		loops = {"maxFactor": ("main body", self.pressureEngine), "servoMaxFactor": ("rows beside the platens", self.radialServo)}
 		working = {key: (part, loop) for key, (part, loop) in loops.items() if loop and loop.saturated}
-		return {f"membrane.{key} = {loop.maxFactor:g}: the pressure of the membrane's {part}": loop.factor for key, (part, loop) in working.items()}
+		return {f"membrane.{key} = {loop.maxFactor:g}: the pressure of the membrane's {part}": atFactor(loop) for key, (part, loop) in working.items()}
 
 	def brokenBonds(self):
 		return self.bonds.brokenCount

@@ -9,7 +9,7 @@ from yade import O
 
 from hexmembrane.scene import boundaries, timestep
 from hexmembrane.scene.flexible_membrane import MASK
-from hexmembrane.scene.lateral_boundary import optionalEngine, singleEngine
+from hexmembrane.scene.lateral_boundary import atFactor, optionalEngine, singleEngine
 
 
 class Scene:
@@ -128,10 +128,10 @@ class Scene:
 			self.radialServo.dead = False
 
 	def saturated(self):
-		"""The closed loops that stand at a limit, of the lateral boundary and on the soil: {key, its value and what is loaded: the present factor}."""
+		"""The closed loops that stand at a limit, of the lateral boundary and on the soil, as :meth:`LateralBoundary.saturated`."""
 		loops = {"axial": self.axialServo, "radial": self.radialServo}
 		working = {name: loop for name, loop in loops.items() if loop and loop.saturated and not loop.dead and (name == "radial" or self.topDrive.mode == "stress")}
-		own = {f"consolidation.maxFactor = {loop.maxFactor:g}: the load that gives the soil its {name} stress": loop.factor for name, loop in working.items()}
+		own = {f"consolidation.maxFactor = {loop.maxFactor:g}: the load that gives the soil its {name} stress": atFactor(loop) for name, loop in working.items()}
 		return {**self.lateralBoundary.saturated(), **own}
 
 	def holdRadialLoad(self):

@@ -45,6 +45,11 @@ class Surface:
 	cellData: dict
 
 
+def atFactor(loop):
+	"""How a loop that multiplies a load stands at its ``maxFactor``, and what to do, for :meth:`LateralBoundary.saturated`."""
+	return f"stands at its limit, {loop.factor:.4g} times what is asked for", "a larger maxFactor, or a membrane that carries less (young, thickness)"
+
+
 class LateralBoundary(abc.ABC):
 	"""Handles to the lateral boundary in ``O``. A kind's constructor takes the engines of the scene, a dict of type name -> list."""
 
@@ -72,6 +77,9 @@ class LateralBoundary(abc.ABC):
 
 	def setMaxVelocity(self, speed):
 		"""Limit the speed of a servo's motion [m/s]; nothing where the pressure is applied and not approached."""
+
+	def allowStraining(self, rate):
+		"""Let a servo follow a specimen that is strained axially at a rate [1/s]; nothing where the pressure is applied and not approached."""
 
 	def setTimeLimit(self, limit):
 		"""Limit the time that a servo has to reach its target once [s], nan: any; nothing without a servo."""
@@ -106,7 +114,7 @@ class LateralBoundary(abc.ABC):
 		return []
 
 	def saturated(self):
-		"""Its closed loops that stand at a limit: {key, its value and what is loaded: the present factor}."""
+		"""Its closed loops that stand at a limit: {key, its value and what is loaded: (how it stands there, what to do)}."""
 		return {}
 
 	def brokenBonds(self):

@@ -11,6 +11,8 @@ from hexmembrane.scene.lateral_boundary import BoundaryParts, LateralBoundary, S
 
 #: Platens' radius over the specimen's: they reach under the wall's rim, so that a specimen that widens stays between them.
 _PLATENS = 1.5
+#: The fastest that the radius widens in shear, over R/2 times the axial strain rate, which is what it takes at constant volume.
+_HEADROOM = 4
 #: Strips of the wall's picture round the circumference and along the height.
 _STRIPS, _ROWS = 72, 24
 
@@ -72,6 +74,14 @@ class RigidWall(LateralBoundary):
 
 	def setMaxVelocity(self, speed):
 		self.servo.maxVelocity = speed
+
+	def allowStraining(self, rate):
+		self.servo.maxRetreat = max(self.servo.maxVelocity, _HEADROOM * rate * self.shape.radius / 2)
+
+	def saturated(self):
+		if not self.servo.atLimit:
+			return {}
+		return {f"wall.maxVelocity = {self.servo.maxVelocity:.4g}: the wall": ("moves as fast as it may", "softer grains, a larger wall.maxVelocity, or a slower test")}
 
 	def setTimeLimit(self, limit):
 		self.servo.timeLimit = limit
