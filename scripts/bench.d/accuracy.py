@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Speed against error: examples/quick.yaml with one knob changed at a time, over eight packings, each against the same packing at the knob's reference.
 
-	accuracy.py FOLDER [--packings N] [--only TEXT] [--processes N] [--runs N] [--slow] [--list]
+	accuracy.py FOLDER [--boundary wall] [--packings N] [--only TEXT] [--processes N] [--runs N] [--slow] [--list]
 	accuracy.py figures FOLDER
-	accuracy.py publish FOLDER
-	accuracy.py prove FOLDER [--processes N]
+	accuracy.py publish FOLDER [--boundary wall]
+	accuracy.py prove FOLDER [--boundary wall] [--processes N]
 
 FOLDER keeps one folder a run, runs.csv with one row a run, and curves.csv with one row a knob, level and quantity (curves.py). A run that has a
 result is not run again, so an interrupted study goes on. Base runs come first, then knob by knob as in knobs.py, the longest runs of each first.
@@ -46,12 +46,13 @@ class Study:
 	:param packings: how many.
 	:param slow: slow levels too.
 	:param short: the short form, for tests.
+	:param boundary: lateral boundary of all runs.
 	"""
 
-	def __init__(self, folder, packings, slow=False, short=False):
+	def __init__(self, folder, packings, slow=False, short=False, boundary="membrane"):
 		self.folder = folder
-		extra, self.knobs = knobs.short() if short else ({}, knobs.knobs())
-		self.common = survey.merged(knobs.COMMON, extra)
+		extra, self.knobs = knobs.short() if short else ({}, knobs.knobs() if boundary == "membrane" else knobs.ofWall())
+		self.common = survey.merged(survey.merged(knobs.COMMON, extra), {"boundary": boundary})
 		self.jobs = {}
 		seeds = range(FIRST_SEED, FIRST_SEED + packings)
 		self._add(knobs.Knob(knobs.BASE, "", [knobs.Level(knobs.BASE)]), seeds, slow)
@@ -113,22 +114,28 @@ class Study:
 		return rows
 
 
-def publish(folder):
+def publish(argv):
 	"""Make the study in a folder the one that tests' error budgets are made from: the rows of curves.csv that they use, in the package."""
 	from hexmembrane.scene import accuracy
 
+	parser = argparse.ArgumentParser(prog="accuracy publish", description="Makes a study the one of the error budgets.")
+	parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path)
+	survey.addBoundary(parser)
+	arguments = parser.parse_args(argv)
+	folder, path = arguments.folder, accuracy.FILES[arguments.boundary]
 	used = {*(knob.name for knob in accuracy.KNOBS), accuracy.VELOCITY_ON_STIFF, accuracy.SWITCH, "skin", "packings"}
 	rows = [row for row in table.read(folder / "curves.csv") if row["knob"] in used and row["quantity"] in accuracy.QUANTITIES]
-	with open(accuracy.FILE, "w", newline="", encoding="utf-8") as file:
+	with open(path, "w", newline="", encoding="utf-8") as file:
 		writer = csv.DictWriter(file, rows[0], lineterminator="\n")
 		writer.writeheader()
 		writer.writerows(rows)
-	print(f"written: {accuracy.FILE}")
+	print(f"written: {path}")
 
 
 def _arguments(argv):
 	parser = argparse.ArgumentParser(prog="accuracy", description="Speed against error.")
 	survey.addOptions(parser)
+	survey.addBoundary(parser)
 	parser.add_argument("--packings", type=int, default=8, help=f"how many, from seed {FIRST_SEED} on (default 8)")
 	parser.add_argument("--runs", type=int, help="how many, from the first on (default: all)")
 	parser.add_argument("--slow", action="store_true", help="slow levels too: a membrane of R/r = 0.2, 7,000 and 30,000 grains")
@@ -147,9 +154,9 @@ def main(argv):
 
 		return proof.main(argv[1:])
 	if argv[:1] == ["publish"]:
-		return publish(pathlib.Path(argv[1]))
+		return publish(argv[1:])
 	arguments = _arguments(argv)
-	study = Study(arguments.folder, arguments.packings, arguments.slow, arguments.short)
+	study = Study(arguments.folder, arguments.packings, arguments.slow, arguments.short, arguments.boundary)
 	wanted = [name for name in study.jobs if arguments.only in name][: arguments.runs]
 	if arguments.list:
 		costs = [study.jobs[name][0].cost for name in wanted]

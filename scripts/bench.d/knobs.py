@@ -176,6 +176,18 @@ def knobs():
 	]  # fmt: skip
 
 
+#: Knobs of the tests in the rigid wall: those that their error budgets are made from.
+OF_WALL = ("velocity", "stiffness", "velocity on stiff grains", "damping", "skin", "mass scaling", "step")
+
+
+def ofWall():
+	"""The knobs in the rigid wall, without levels that change a membrane."""
+	found = [knob for knob in knobs() if knob.name in OF_WALL]
+	for knob in found:
+		knob.levels = [level for level in knob.levels if "membrane" not in level.change]
+	return found
+
+
 def short():
 	"""One knob with a few quick levels, for a test of the study: (what all runs change, knobs)."""
 	common = {

@@ -60,7 +60,7 @@ def rows(folder, seeds=SEEDS):
 def main(argv):
 	parser = argparse.ArgumentParser(prog="accuracy prove", description="Whether error budgets hold.")
 	survey.addOptions(parser)
-	parser.add_argument("--boundary", choices=("membrane", "wall"), default="membrane", help="lateral boundary of the tests; each has a folder of its own")
+	survey.addBoundary(parser)
 	arguments = parser.parse_args(argv)
 	wanted = {name: keys for name, keys in jobs(arguments.boundary).items() if arguments.only in name}
 	survey.runAll(

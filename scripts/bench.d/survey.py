@@ -85,3 +85,8 @@ def addOptions(parser):
 	parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path)
 	parser.add_argument("--processes", type=int, default=len(os.sched_getaffinity(0)))
 	parser.add_argument("--only", default="", help="runs whose name has this in it")
+
+
+def addBoundary(parser):
+	"""The option of surveys that are made in either lateral boundary."""
+	parser.add_argument("--boundary", choices=("membrane", "wall"), default="membrane", help="lateral boundary of the tests; each has a folder of its own")

@@ -44,6 +44,17 @@ def test_jobs(study):
 		assert costs == sorted(costs, reverse=True), "the longest of a knob begin first"
 
 
+def test_jobsInTheWall(part, tmp_path):
+	"""Each knob that a budget in the wall is made from, with its reference and no level of a membrane."""
+	study = part("accuracy").Study(tmp_path, 1, boundary="wall")
+	assert {knob.name for knob in study.knobs} == set(part("knobs").OF_WALL)
+	for name in study.jobs:
+		keys = study.configuration(name)
+		assert keys["boundary"] == "wall" and keys["membrane"] == study.configuration("base, seed 7")["membrane"]
+		Config.of(keys)
+	assert all(len(knob.levels) > 1 for knob in study.knobs)
+
+
 def test_slowLevelsAreAsked(part, tmp_path):
 	names = [set(part("accuracy").Study(tmp_path, 2, slow=slow).jobs) for slow in (False, True)]
 	assert names[1] - names[0] == {f"{what}, seed {seed}" for what in ("size ratio 0.2", "grains 7000", "grains 30000") for seed in (7, 8)}
@@ -184,8 +195,8 @@ def test_publish(part, tmp_path, monkeypatch):
 	names = [knob.name for knob in accuracy.KNOBS] + ["skin", "packings", accuracy.SWITCH, "tier"]
 	rows = [[name, x, x, quantity, 0, 0.01, 0, 8, 1, x, "yes", 0.1 * x, 0.01] for name in names for x in (1, 2) for quantity in (*accuracy.QUANTITIES, "q at 1 %")]
 	part("table").write(str(tmp_path / "curves.csv"), header, rows)
-	monkeypatch.setattr(accuracy, "FILE", tmp_path / "package.csv")
-	part("accuracy").main(["publish", str(tmp_path)])
+	monkeypatch.setitem(accuracy.FILES, "wall", tmp_path / "package.csv")
+	part("accuracy").main(["publish", str(tmp_path), "--boundary", "wall"])
 	assert len((tmp_path / "package.csv").read_text().splitlines()) == 1 + (len(names) - 1) * 2 * 2
 	measured = accuracy.Measured.of(tmp_path / "package.csv")
 	assert set(measured.curves) == {knob.name for knob in accuracy.KNOBS} and measured.curves["step"].error(accuracy.PEAK, 2) == pytest.approx((0.2, 0.01, 0.01))

@@ -149,6 +149,22 @@ def test_givenKeysStay(measured):
 	assert set(chosen) == {"shear.velocity", "numerics.safety"} and config.specimen.emod == 4e7
 
 
+def test_massesAreScaledWhereThatIsCheaper(measured):
+	"""The switches are tried where their keys are left out: on if what they cost in accuracy is bought back, and a key that is given stays."""
+	radii = specimen.plannedRadii(quick())
+	measured.switchTime["on with the membrane"] = 0.3
+	chosen = accuracy.choose(quick(OPEN, accuracy=0.1), radii, measured)
+	assert chosen["specimen.massScaling"] is True and chosen["membrane.densityScaling"] is None
+	assert "specimen.massScaling" not in accuracy.choose(quick(OPEN, accuracy=0.0205), radii, measured)
+	assert "membrane.densityScaling" not in accuracy.choose(quick(OPEN, accuracy=0.1, membrane={"densityScaling": 1.0}), radii, measured)
+	measured.switchTime["on with the membrane"] = 4.0
+	measured.switchTime["on"] = 0.9
+	config = quick(OPEN, accuracy=0.1)
+	assert accuracy.choose(config, radii, measured)["specimen.massScaling"] is True and config.membrane.densityScaling == 1
+	assert accuracy.budget(config, radii, measured).total(PEAK) <= 0.1 * (1 + 1e-4)
+	assert "specimen.massScaling" not in accuracy.choose(quick(OPEN, accuracy=0.1, specimen={"massScaling": False}), radii, measured)
+
+
 def test_lessAccurateIsNoDearer(measured):
 	"""The chosen velocity does not fall as the error grows."""
 	speeds = []
@@ -193,11 +209,13 @@ def test_plannedRadii(tmp_path):
 	assert list(specimen.plannedRadii(config)) == list(packing.radii)
 
 
-def test_everyKnobWasMeasured():
+@pytest.mark.parametrize("boundary", ["membrane", "wall"])
+def test_everyKnobWasMeasured(boundary):
 	"""The measurements that come with the package have a curve for each knob, its default inside."""
-	measured = accuracy.Measured.of()
-	config = quick(OPEN)
+	config = quick(OPEN, boundary=boundary)
+	measured = accuracy.Measured.forTest(config)
 	found = accuracy.budget(config, specimen.plannedRadii(config))
-	assert set(measured.curves) == {knob.name for knob in accuracy.KNOBS} | {accuracy.VELOCITY_ON_STIFF} and len(found.parts) == len(accuracy.KNOBS)
+	knobs = [knob for knob in accuracy.KNOBS if knob.applies(config)]
+	assert set(measured.curves) == {knob.name for knob in knobs} | {accuracy.VELOCITY_ON_STIFF} and len(found.parts) == len(knobs)
 	assert found.unmeasured() == [] and set(measured.scatter) == set(measured.packings) == set(accuracy.QUANTITIES)
 	assert found.total(PEAK) < 0.2

@@ -308,7 +308,7 @@ class Config:
 	accuracy: Optional[float] = key(
 		None,
 		"error of the peak of q that the settings of one run may cost, as a share: the cheapest that do are chosen for shear.velocity, specimen.emod, "
-		"numerics.safety and membrane.sizeRatio where these keys are left out; none: their defaults",
+		"numerics.safety, membrane.sizeRatio, specimen.massScaling and membrane.densityScaling where these keys are left out; none: their defaults",
 		"",
 		low=0,
 		high=1,

@@ -99,7 +99,7 @@ def prepare(config, out, say):
 	radii = specimen.plannedRadii(config)
 	if config.accuracy is not None:
 		chosen = accuracy.choose(config, radii)
-		say(f"accuracy {100 * config.accuracy:g} %: " + ", ".join(f"{key} = {value:g}" for key, value in chosen.items()))
+		say(f"accuracy {100 * config.accuracy:g} %: " + ", ".join(f"{key} = {accuracy.valueSaid(value)}" for key, value in chosen.items()))
 	for line in estimate.improbable(config, radii):
 		say(line)
 	estimate.requireStiffness(config, radii)

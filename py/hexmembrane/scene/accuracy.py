@@ -13,6 +13,7 @@ Errors of one sign are not set off against those of the other. Scatter was measu
 Speed costs more on stiff grains, so its curve was measured at two stiffnesses; m, h and s between them are linear in the stiffness' logarithm.
 """
 
+import copy
 import csv
 import dataclasses
 import math
@@ -29,8 +30,8 @@ from hexmembrane.scene import timestep
 PEAK, VOLUME = QUANTITIES = "peak q", "volumetric strain at 15 %"
 #: Grains of the packings on which the curves were measured.
 GRAINS = 1200
-#: The measurements: ``scripts/bench accuracy publish``.
-FILE = pathlib.Path(__file__).with_name("accuracy.csv")
+#: The measurements by lateral boundary: ``scripts/bench accuracy publish``. A wall that follows a servo pays more for speed than a membrane under its pressure.
+FILES = {"membrane": pathlib.Path(__file__).with_name("accuracy.csv"), "wall": pathlib.Path(__file__).with_name("accuracy-wall.csv")}
 #: How far a level may lie beyond the last one measured: chosen values are rounded to four digits.
 _ROUNDED = 1e-3
 #: Parts that the way between two measured levels is divided into when settings are chosen.
@@ -116,15 +117,16 @@ class Curve:
 
 @dataclasses.dataclass
 class Measured:
-	"""What the study found at GRAINS grains: curves by knob, (|m|, h, s) by quantity of SWITCH's levels, s_0 and the scatter of packings by quantity."""
+	"""What the study found at GRAINS grains: curves by knob, (|m|, h, s) by quantity and time of SWITCH's levels, s_0 and the scatter of packings by quantity."""
 
 	curves: dict
 	switch: dict
+	switchTime: dict
 	scatter: dict
 	packings: dict
 
 	@classmethod
-	def of(cls, path=FILE):
+	def of(cls, path=FILES["membrane"]):
 		"""The measurements in ``curves.csv`` of ``scripts/bench accuracy``. Runs that differ in the lists' skin alone differ by rounding: they tell the scatter."""
 		with open(path, encoding="utf-8") as file:
 			rows = [row for row in csv.DictReader(file) if row["quantity"] in QUANTITIES]
@@ -140,11 +142,17 @@ class Measured:
 			mean, half = ({name: column(what, knob, name)[rising] for name in QUANTITIES} for what in ("fit", "fit_half_width"))
 			spread = {name: _outwards(column("scatter", knob, name)[rising]) for name in QUANTITIES}
 			curves[knob] = Curve(x[rising], mean, half, spread, column("time", knob, PEAK)[rising])
-		switch = {}
+		switch, times = {}, {}
 		for row in rows:
 			if row["knob"] == SWITCH:
+				times[row["value"]] = float(row["time"])
 				switch.setdefault(row["value"], {})[row["quantity"]] = (abs(float(row["mean"])), float(row["half_width"]), float(row["scatter"]))
-		return cls(curves, switch, scatter, packings)
+		return cls(curves, switch, times, scatter, packings)
+
+	@classmethod
+	def forTest(cls, config):
+		"""The measurements in a configuration's lateral boundary; in the membrane's where it has both."""
+		return cls.of(FILES["membrane" if "membrane" in boundaries(config) else "wall"])
 
 	def error(self, knob, quantity, levels):
 		"""|m|, h and s of a knob; ``levels``: the level of each knob by name, numbers or arrays."""
@@ -200,7 +208,7 @@ class Budget:
 
 		for key, value, x, errors in self.parts:
 			costs = [f"{100 * mean:.2f} +- {100 * half:.2f}, {100 * spread:.2f} %" for mean, half, spread in (errors[name] for name in QUANTITIES)] if errors else ["not measured there", ""]
-			line(key, *costs, "on" if value is True else f"{'as needed' if value is None else format(value, '.4g')}, level {x:.3g}")
+			line(key, *costs, valueSaid(value) if value is True else f"{valueSaid(value)}, level {x:.3g}")
 		for name, part in (("rounding alone", self.scatter), ("scatter of packings", self.packings), ("budget of a run", {name: self.total(name) for name in QUANTITIES})):
 			line(name, *(f"{100 * part[name]:.2f} %" for name in QUANTITIES))
 		return said
@@ -210,6 +218,11 @@ class Budget:
 		parts = {key: {name: [_short(float(part)) for part in errors[name]] for name in QUANTITIES} if errors else "not measured there" for key, _, _, errors in self.parts}
 		sums = {"rounding alone": self.scatter, "scatter of packings": self.packings, "budget of a run": {name: self.total(name) for name in QUANTITIES}}
 		return {**parts, **{title: {name: _short(part[name]) for name in QUANTITIES} for title, part in sums.items()}}
+
+
+def valueSaid(value):
+	"""A key's value as a test tells it."""
+	return "on" if value is True else "as needed" if value is None else f"{value:.4g}"
 
 
 def _short(number):
@@ -230,7 +243,7 @@ def budget(config, radii, measured=None):
 	:param config: checked configuration.
 	:param radii: of its grains [m].
 	"""
-	measured = measured or Measured.of()
+	measured = measured or Measured.forTest(config)
 	parts = []
 	knobs = [knob for knob in KNOBS if knob.applies(config) and knob.name in measured.curves]
 	levels = {knob.name: knob.level(config, radii) for knob in knobs}
@@ -271,33 +284,63 @@ def choose(config, radii, measured=None):
 
 	:param config: checked configuration with ``accuracy``; changed. Keys that were given stay.
 	:param radii: of its grains [m].
-	:returns: {key: value} of what was chosen.
+	:returns: {key: value} of what was chosen; switches of the masses only where they are on.
 	:raises ConfigError: no settings do; a given key is outside what was measured.
 	"""
-	measured = measured or Measured.of()
+	measured = measured or Measured.forTest(config)
+	tried = [_cheapest(_with(config, switches), radii, measured) | {"switches": switches} for switches in _switches(config)]
+	within = [found for found in tried if found["values"] is not None]
+	if not within:
+		least, floor = min(found["least"] for found in tried), _scattered(measured.scatter, len(radii))[PEAK]
+		raise ConfigError(
+			"accuracy",
+			config.accuracy,
+			f"is out of reach: {100 * least:.2g} % is the least with the keys that are given, {200 * floor:.2g} % of it for rounding alone",
+			f"accuracy: {math.ceil(1000 * least) / 1000:g} or more, or more grains, or leave keys out",
+		)
+	best = min(within, key=lambda found: found["cost"])
+	chosen = {**best["values"], **best["switches"]}
+	_set(config, chosen)
+	return chosen
+
+
+def _switches(config):
+	"""What ``accuracy`` may switch on where the configuration leaves it out: nothing, the grains' scaled masses, and the membrane's density with them."""
+	found = [{}]
+	if "specimen.massScaling" in config.given:
+		return found
+	found.append({"specimen.massScaling": True})
+	if "membrane" in boundaries(config) and "membrane.densityScaling" not in config.given:
+		found.append({"specimen.massScaling": True, "membrane.densityScaling": None})
+	return found
+
+
+def _with(config, values):
+	changed = copy.deepcopy(config)
+	_set(changed, values)
+	return changed
+
+
+def _set(config, values):
+	for key, value in values.items():
+		section, name = key.split(".")
+		setattr(getattr(config, section), name, value)
+
+
+def _cheapest(config, radii, measured):
+	"""{"values": {key: value} of the open keys at the least cost within the error, None where nothing is; "cost": that; "least": the least error}."""
 	knobs = [knob for knob in KNOBS if knob.applies(config) and knob.name in measured.curves]
 	levels = [_levels(measured.curves[knob.name].x) if knob.key in openKeys(config) else _level(knob, measured, config, radii) for knob in knobs]
 	grid = numpy.meshgrid(*levels, indexing="ij")
 	at = {knob.name: x for knob, x in zip(knobs, grid)}
-	errors = [*(measured.error(knob.name, PEAK, at) for knob in knobs), measured.switch[_switchLevel(config)][PEAK]]
+	switch = _switchLevel(config)
+	errors = [*(measured.error(knob.name, PEAK, at) for knob in knobs), measured.switch[switch][PEAK]]
 	floor = _scattered(measured.scatter, len(radii))[PEAK]
 	totals = _total([_withGrains(error, len(radii)) for error in errors], floor)
-	costs = math.prod(measured.curves[knob.name].cost(x) for knob, x in zip(knobs, grid))
-	if totals.min() > config.accuracy:
-		raise ConfigError(
-			"accuracy",
-			config.accuracy,
-			f"is out of reach: {100 * totals.min():.2g} % is the least with the keys that are given, {200 * floor:.2g} % of it for rounding alone",
-			f"accuracy: {math.ceil(1000 * totals.min()) / 1000:g} or more, or more grains, or leave keys out",
-		)
+	costs = measured.switchTime[switch] * math.prod(measured.curves[knob.name].cost(x) for knob, x in zip(knobs, grid))
 	best = numpy.unravel_index(numpy.where(totals <= config.accuracy, costs, numpy.inf).argmin(), costs.shape)
-	chosen = {
-		knob.key: float(f"{knob.value(x[best], config, radii):.4g}") for knob, x in zip(knobs, grid) if knob.key in openKeys(config)
-	}
-	for key, value in chosen.items():
-		section, name = key.split(".")
-		setattr(getattr(config, section), name, value)
-	return chosen
+	values = {knob.key: float(f"{knob.value(x[best], config, radii):.4g}") for knob, x in zip(knobs, grid) if knob.key in openKeys(config)}
+	return {"values": values if totals[best] <= config.accuracy else None, "cost": costs[best], "least": float(totals.min())}
 
 
 def _level(knob, measured, config, radii):
