@@ -11,6 +11,7 @@ The budget of a run, the largest difference to a run with all knobs at their ref
 Errors of one sign are not set off against those of the other. Scatter was measured at 1,200 grains and goes with 1/sqrt(N).
 
 Speed costs more on stiff grains, so its curve was measured at two stiffnesses; m, h and s between them are linear in the stiffness' logarithm.
+Scaled masses raise the inertial number, so a test pays for them through its velocity too.
 """
 
 import copy
@@ -60,9 +61,14 @@ class Knob:
 		return not self.key.startswith("membrane.") or "membrane" in boundaries(config)
 
 
+def _heavier(config, radii):
+	"""What ``specimen.massScaling`` makes of the inertial number: it goes with the root of the grains' mass."""
+	return math.sqrt(timestep.meanMassFactor(radii, config.specimen.springs.direct)) if config.specimen.massScaling else 1.0
+
+
 def _rate(config, radii):
-	"""Strain rate at a platens' velocity of 1 m/s as an inertial number."""
-	return timestep.inertialTime(radii, config.specimen.density, config.consolidation.pressure) / config.specimen.height
+	"""Strain rate at a platens' velocity of 1 m/s as an inertial number, of the masses that the grains have in the test."""
+	return _heavier(config, radii) * timestep.inertialTime(radii, config.specimen.density, config.consolidation.pressure) / config.specimen.height
 
 
 def _sizeRatio(config, radii):
@@ -337,7 +343,8 @@ def _cheapest(config, radii, measured):
 	errors = [*(measured.error(knob.name, PEAK, at) for knob in knobs), measured.switch[switch][PEAK]]
 	floor = _scattered(measured.scatter, len(radii))[PEAK]
 	totals = _total([_withGrains(error, len(radii)) for error in errors], floor)
-	costs = measured.switchTime[switch] * math.prod(measured.curves[knob.name].cost(x) for knob, x in zip(knobs, grid))
+	slower = _heavier(config, radii)  # times were measured at a velocity, of grains with their own masses
+	costs = measured.switchTime[switch] * math.prod(measured.curves[knob.name].cost(x / slower if knob.name == "velocity" else x) for knob, x in zip(knobs, grid))
 	best = numpy.unravel_index(numpy.where(totals <= config.accuracy, costs, numpy.inf).argmin(), costs.shape)
 	values = {knob.key: float(f"{knob.value(x[best], config, radii):.4g}") for knob, x in zip(knobs, grid) if knob.key in openKeys(config)}
 	return {"values": values if totals[best] <= config.accuracy else None, "cost": costs[best], "least": float(totals.min())}

@@ -37,10 +37,9 @@ def _raiseMasses(config, ids, radii, say):
 	for state, factor in zip((O.bodies[i].state for i in ids), factors.tolist()):
 		state.mass *= factor
 		state.inertia *= factor
-	true = timestep.sphereMass(radii, config.specimen.density)
 	steps = [timestep.grainStep(dataclasses.replace(config.specimen, massScaling=raised), radii) for raised in (True, False)]
 	say(
-		f"grains' mass times {(true * factors).sum() / true.sum():.3g}, {factors.max():.3g} for the smallest: their "
+		f"grains' mass times {timestep.meanMassFactor(radii, config.specimen.springs.direct):.3g}, {factors.max():.3g} for the smallest: their "
 		f"critical step is {steps[0]:.4g} s instead of {steps[1]:.4g} s"
 	)
 

@@ -72,6 +72,12 @@ def massFactors(radii, direct=False):
 	return (numpy.max(radii) / numpy.asarray(radii)) ** (3 if direct else 2)
 
 
+def meanMassFactor(radii, direct=False):
+	"""Mass of all grains with :func:`massFactors` over their own."""
+	volumes = numpy.asarray(radii) ** 3
+	return float((volumes * massFactors(radii, direct)).sum() / volumes.sum())
+
+
 def grainStep(specimen, radii):
 	"""Critical step [s] of the grains before there are contacts: CONTACTS equal neighbours stand all round a smallest grain.
 
