@@ -149,6 +149,14 @@ def test_givenKeysStay(measured):
 	assert set(chosen) == {"shear.velocity", "numerics.safety"} and config.specimen.emod == 4e7
 
 
+@pytest.mark.parametrize("changes, told", [({}, False), ({"specimen": {"rollingFriction": 0.5}}, True), ({"specimen": {"rollingFriction": 0.5, "emod": 2e8}}, False)])
+def test_softGrainsWithRollingResistance(measured, changes, told):
+	"""The curve of the stiffness is of grains without rolling resistance: a test of soft ones with it says so."""
+	config = quick(**changes)
+	lines = accuracy.budget(config, specimen.plannedRadii(config), measured).lines()
+	assert ("measured without rolling resistance" in lines[-1]) is told
+
+
 def test_massesAreScaledWhereThatIsCheaper(measured):
 	"""The switches are tried where their keys are left out: on if what they cost in accuracy is bought back, and a key that is given stays."""
 	radii = specimen.plannedRadii(quick())
@@ -158,7 +166,7 @@ def test_massesAreScaledWhereThatIsCheaper(measured):
 	assert "specimen.massScaling" not in accuracy.choose(quick(OPEN, accuracy=0.022), radii, measured)
 	assert "membrane.densityScaling" not in accuracy.choose(quick(OPEN, accuracy=0.2, membrane={"densityScaling": 1.0}), radii, measured)
 	measured.switchTime["on with the membrane"] = 4.0
-	measured.switchTime["on"] = 0.9
+	measured.switchTime["on"] = 0.3
 	config = quick(OPEN, accuracy=0.2)
 	assert accuracy.choose(config, radii, measured)["specimen.massScaling"] is True and config.membrane.densityScaling == 1
 	assert accuracy.budget(config, radii, measured).total(PEAK) <= 0.2 * (1 + 1e-4)
@@ -209,8 +217,8 @@ def test_plannedRadii(tmp_path):
 	assert list(specimen.plannedRadii(config)) == list(packing.radii)
 
 
-@pytest.mark.parametrize("boundary", ["membrane", "wall"])
-def test_everyKnobWasMeasured(boundary):
+@pytest.mark.parametrize("boundary, most", [("membrane", 0.2), ("wall", 0.3)])
+def test_everyKnobWasMeasured(boundary, most):
 	"""The measurements that come with the package have a curve for each knob, its default inside."""
 	config = quick(OPEN, boundary=boundary)
 	measured = accuracy.Measured.forTest(config)
@@ -218,4 +226,4 @@ def test_everyKnobWasMeasured(boundary):
 	knobs = [knob for knob in accuracy.KNOBS if knob.applies(config)]
 	assert set(measured.curves) == {knob.name for knob in knobs} | {accuracy.VELOCITY_ON_STIFF} and len(found.parts) == len(knobs)
 	assert found.unmeasured() == [] and set(measured.scatter) == set(measured.packings) == set(accuracy.QUANTITIES)
-	assert found.total(PEAK) < 0.2
+	assert found.total(PEAK) < most

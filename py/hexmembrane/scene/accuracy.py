@@ -94,6 +94,9 @@ KNOBS = (
 VELOCITY_ON_STIFF = "velocity on stiff grains"
 #: kn/(p d) of the base test and of the stiffest grains.
 STIFFNESSES = 100 * math.pi, 3000.0
+#: kn/(p d) below which softness was seen to cost more with rolling resistance than the curves say.
+SOFT = 1000
+_ROLLING = "WARNING: stiffness was measured without rolling resistance; with it soft grains were up to 17 % too weak (examples/accuracy); fix: kn/(p d) of 1000 or more"
 #: The knob of ``specimen.massScaling``, which has no level between on and off.
 SWITCH = "mass scaling"
 
@@ -191,11 +194,13 @@ class Budget:
 	:param parts: (key, value, level, (|m|, h, s) by quantity) of each knob; None instead where the level is outside what was measured.
 	:param scatter: s_0 by quantity.
 	:param packings: of packings that differ in their seed alone, by quantity.
+	:param elsewhere: what was measured on grains of another kind than the test's, in a sentence; empty: nothing.
 	"""
 
 	parts: list
 	scatter: dict
 	packings: dict
+	elsewhere: str = ""
 
 	def total(self, quantity):
 		"""The budget of a run, of the knobs that were measured there."""
@@ -217,7 +222,7 @@ class Budget:
 			line(key, *costs, valueSaid(value) if value is True else f"{valueSaid(value)}, level {x:.3g}")
 		for name, part in (("rounding alone", self.scatter), ("scatter of packings", self.packings), ("budget of a run", {name: self.total(name) for name in QUANTITIES})):
 			line(name, *(f"{100 * part[name]:.2f} %" for name in QUANTITIES))
-		return said
+		return [*said, f"  {self.elsewhere}"] if self.elsewhere else said
 
 	def asDict(self):
 		"""For the resolved configuration: sizes of mean errors, half widths and scatters by key, then the sums; plain numbers."""
@@ -259,7 +264,8 @@ def budget(config, radii, measured=None):
 		parts.append((_keyOf(knob, config), _get(config, _keyOf(knob, config)), x, errors))
 	if config.specimen.massScaling:
 		parts.append(("specimen.massScaling", True, math.nan, {name: _withGrains(errors, len(radii)) for name, errors in measured.switch[_switchLevel(config)].items()}))
-	return Budget(parts, _scattered(measured.scatter, len(radii)), _scattered(measured.packings, len(radii)))
+	soft = config.specimen.rollingFriction > 0 and levels.get("stiffness", math.inf) < SOFT
+	return Budget(parts, _scattered(measured.scatter, len(radii)), _scattered(measured.packings, len(radii)), _ROLLING if soft else "")
 
 
 def _switchLevel(config):
