@@ -110,6 +110,7 @@ COMMANDS = {
 	"scripts/bench kernels --benchmark_filter='linear|rolling|motion'": NAMES,
 	"scripts/bench kernels --benchmark_filter=Regions": NAMES,
 	"scripts/bench accuracy": Elsewhere(TESTS + "test_accuracy.py", "def test_shortForm"),
+	"scripts/bench accuracy --boundary wall": Elsewhere(TESTS + "test_accuracy.py", "def test_jobsInTheWall"),
 	"scripts/bench cases": Elsewhere("tests/cases/test_hard_cases.py", "hardcases"),
 }
 _MEASURES = "measures for minutes on an idle machine"
