@@ -143,7 +143,7 @@ Real PlatenDrive::servoStep(Real velocityNow)
 	}
 	// Nothing to hold on to: a given mass accelerates as it does in nature, up to the velocity of the approach.
 	if (math::isnan(mass)) return phaseApproach;
-	return hexmembrane::servoVelocity({mass, 0, phaseApproach}, velocityNow, dt, wanted, force);
+	return hexmembrane::servoVelocity({mass, 0, phaseApproach, phaseApproach}, velocityNow, dt, wanted, force);
 }
 
 void PlatenDrive::requireReached(Real newTarget)

@@ -113,6 +113,7 @@ BAD = [
 	(dict(stress=float("nan")), ValueError, "RadialWallServo.stress"),
 	(dict(stress=-1.0), ValueError, "RadialWallServo.stress = -1"),
 	(dict(maxVelocity=float("nan")), ValueError, "RadialWallServo.maxVelocity"),
+	(dict(maxRetreat=-1.0), ValueError, "RadialWallServo.maxRetreat = -1"),
 	(dict(height=float("nan")), ValueError, "bottomPlaten and topPlaten"),
 	(dict(wall=-1), ValueError, "RadialWallServo.wall = -1"),
 	(dict(wall=0), ValueError, "no CylinderWall"),
