@@ -128,7 +128,7 @@ class Scene:
 			self.radialServo.dead = False
 
 	def saturated(self):
-		"""The closed loops that stand at a limit, of the lateral boundary and on the soil, as :meth:`LateralBoundary.saturated`."""
+		"""The closed loops that stand at a limit, of the lateral boundary and on the soil, as :meth:`hexmembrane.scene.lateral_boundary.LateralBoundary.saturated`."""
 		loops = {"axial": self.axialServo, "radial": self.radialServo}
 		working = {name: loop for name, loop in loops.items() if loop and loop.saturated and not loop.dead and (name == "radial" or self.topDrive.mode == "stress")}
 		own = {f"consolidation.maxFactor = {loop.maxFactor:g}: the load that gives the soil its {name} stress": atFactor(loop) for name, loop in working.items()}

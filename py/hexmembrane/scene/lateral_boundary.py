@@ -46,7 +46,7 @@ class Surface:
 
 
 def atFactor(loop):
-	"""How a loop that multiplies a load stands at its ``maxFactor``, and what to do, for :meth:`LateralBoundary.saturated`."""
+	"""How a loop that multiplies a load stands at its ``maxFactor``, and what to do, for :meth:`hexmembrane.scene.lateral_boundary.LateralBoundary.saturated`."""
 	return f"stands at its limit, {loop.factor:.4g} times what is asked for", "a larger maxFactor, or a membrane that carries less (young, thickness)"
 
 
