@@ -45,6 +45,6 @@ def test_wallThatIsTooSlow(tmp_path, runHere, stop):
 		assert abs(distance[-1]) > 0.05 and checkpoints.exist(tmp_path / "out")
 	else:
 		assert code == 0
-		assert error.count("WARNING: wall.maxVelocity = 0.0001: the wall moves as fast as it may, in shear at ") == 1
+		assert error.count("WARNING: wall.maxVelocity: the wall moves as fast as it may, 0.0001 m/s, in shear at ") == 1
 		assert table["loops_saturated"][-1] == 1
 		assert error.count("WARNING: shear.pressureTolerance") == 1 and "WARNING, the pressure was not held" in error

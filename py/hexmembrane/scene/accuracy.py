@@ -95,7 +95,7 @@ VELOCITY_ON_STIFF = "velocity on stiff grains"
 #: kn/(p d) of the base test and of the stiffest grains.
 STIFFNESSES = 100 * math.pi, 3000.0
 #: kn/(p d) below which softness was seen to cost more with rolling resistance than the curves say.
-SOFT = 1000
+_SOFT = 1000
 _ROLLING = "WARNING: stiffness was measured without rolling resistance; with it soft grains were up to 17 % too weak (examples/accuracy); fix: kn/(p d) of 1000 or more"
 #: The knob of ``specimen.massScaling``, which has no level between on and off.
 SWITCH = "mass scaling"
@@ -264,7 +264,7 @@ def budget(config, radii, measured=None):
 		parts.append((_keyOf(knob, config), _get(config, _keyOf(knob, config)), x, errors))
 	if config.specimen.massScaling:
 		parts.append(("specimen.massScaling", True, math.nan, {name: _withGrains(errors, len(radii)) for name, errors in measured.switch[_switchLevel(config)].items()}))
-	soft = config.specimen.rollingFriction > 0 and levels.get("stiffness", math.inf) < SOFT
+	soft = config.specimen.rollingFriction > 0 and levels.get("stiffness", math.inf) < _SOFT
 	return Budget(parts, _scattered(measured.scatter, len(radii)), _scattered(measured.packings, len(radii)), _ROLLING if soft else "")
 
 

@@ -81,7 +81,7 @@ class RigidWall(LateralBoundary):
 	def saturated(self):
 		if not self.servo.atLimit:
 			return {}
-		return {f"wall.maxVelocity = {self.servo.maxVelocity:.4g}: the wall": ("moves as fast as it may", "softer grains, a larger wall.maxVelocity, or a slower test")}
+		return {"wall.maxVelocity: the wall": (f"moves as fast as it may, {abs(self.servo.velocity):.3g} m/s", "softer grains, a larger wall.maxVelocity, or a slower test")}
 
 	def setTimeLimit(self, limit):
 		self.servo.timeLimit = limit
