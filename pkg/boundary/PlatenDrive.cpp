@@ -133,12 +133,12 @@ void PlatenDrive::changeTarget(Real newTarget)
 	phaseSettled = false;
 }
 
-Real PlatenDrive::servoStep(Real velocityNow)
+Real PlatenDrive::servoStep(Real velocityNow, Real touchingMass)
 {
 	const Real dt = scene->dt;
 	const Real wanted = phaseTarget - hexmembrane::stillToCome(ramps, 0);
 	if (stiffness > 0) {
-		const hexmembrane::PlatenServo servo = hexmembrane::makePlatenServo(stiffness, dt, phaseTarget, damping, mass, phaseApproach);
+		const hexmembrane::PlatenServo servo = hexmembrane::makePlatenServo(stiffness, touchingMass, dt, phaseTarget, damping, mass, phaseApproach);
 		return hexmembrane::servoVelocity(servo, velocityNow, dt, wanted, force);
 	}
 	// Nothing to hold on to: a given mass accelerates as it does in nature, up to the velocity of the approach.
@@ -185,7 +185,7 @@ void PlatenDrive::step(StepView& view)
 	if (mode == "stress") {
 		requireReached(newTarget);
 		stiffness = math::isnan(contactStiffness) ? view.stiffness(platen, unit) : (met.count > 0 ? contactStiffness : 0);
-		const Real next = servoStep(state.vel.dot(unit)), weight = hexmembrane::rampWeight(phaseTime + ahead, phaseDuration);
+		const Real next = servoStep(state.vel.dot(unit), view.touchingMass(platen)), weight = hexmembrane::rampWeight(phaseTime + ahead, phaseDuration);
 		state.vel = (weight * next + (1 - weight) * phaseVelocity) * unit;
 	} else {
 		settled = false;

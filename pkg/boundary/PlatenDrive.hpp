@@ -21,6 +21,8 @@ public:
 	void step(StepView& view) override;
 	bool mayBeSeveral() const override { return true; }
 	void requireReferenceScene() const override;
+	//! Share of the target force that the platen carried in its last step, NaN when that was none under stress.
+	Real carried() const { return phaseMode == "stress" ? force / phaseTarget : NaN; }
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(PlatenDrive,GlobalEngine,
@@ -33,7 +35,8 @@ public:
 		"the velocity has no jump, and one that is set every step is followed T/2 behind.\n\n"
 		"**Stress.** The platen is a body of mass m on a dashpot c, pushed by σ A and pushed back by the specimen: m dv/dt = σ A - F - c v. "
 		"With K the stiffness of its contacts along the direction (summed every step) and Δt the step, m = 4 K Δt² and c = 2 ζ sqrt(K m), "
-		"which is stable for any stiffness; and v <= 0.01 σ A/(K Δt), so that at most 1 % of the target arrives in a step. "
+		"which is stable for any stiffness. With M the mass of the touching spheres, v <= 0.05 σ A/sqrt(K M) and v <= 0.1 σ A/(K Δt): "
+		"what the platen meets answers with a twentieth of the target at most, and at most a tenth arrives in a step. "
 		"While nothing touches it the platen advances at maxVelocity. "
 		"Within rampTime the force goes from that of the moment to σ A and the velocity from that of the moment to the servo's. "
 		"A platen that has to keep moving carries c v = 4 ζ K Δt v less than the target; at rest the error vanishes.\n\n"
@@ -97,7 +100,7 @@ private:
 	void beginPhase(Real newTarget, const State& state, const Vector3r& unit);
 	void changeTarget(Real newTarget);
 	Real approachVelocity() const;
-	Real servoStep(Real velocityNow);
+	Real servoStep(Real velocityNow, Real touchingMass);
 	void requireReached(Real newTarget);
 };
 REGISTER_SERIALIZABLE(PlatenDrive);

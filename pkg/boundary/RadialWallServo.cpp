@@ -71,7 +71,7 @@ void RadialWallServo::requireReached(Real target)
 		phaseSettled = phaseReached = false;
 	}
 	phaseSettled |= settled;
-	phaseReached |= radialStress >= stress;
+	phaseReached |= radialStress >= stress && velocity <= 0;
 	if (!phaseSettled && phaseTime > timeLimit)
 		throw std::runtime_error("RadialWallServo.timeLimit = " + hexmembrane::formatNumber(timeLimit) + ": the wall carries " +
 		                         hexmembrane::formatNumber(radialStress) + " Pa of " + hexmembrane::formatNumber(stress) +
@@ -114,7 +114,7 @@ void RadialWallServo::step(StepView& view)
 
 	const Real dt = scene->dt, target = stress * area;
 	if (stiffness > 0) {
-		auto servo = hexmembrane::makePlatenServo(stiffness, dt, target, damping, NaN, maxVelocity);
+		auto servo = hexmembrane::makePlatenServo(stiffness, view.touchingMass(wall), dt, target, damping, NaN, maxVelocity);
 		if (!math::isnan(maxRetreat)) servo.maxRetreat = maxRetreat;
 		velocity = hexmembrane::servoVelocity(servo, velocity, dt, target, force, flow);
 		flow = phaseReached ? hexmembrane::servoFlow(flow, velocity) : 0; // what the wall meets on its way, it meets with its whole dashpot

@@ -34,9 +34,9 @@ private:
 		"the distance of the facing sides of two Platens, or given.\n\n"
 		"The radius is the one degree of freedom of a mass m on a dashpot c, pushed inwards by 2 π R h σ and back by the specimen, "
 		"with the recipe of PlatenDrive: m = 4 K Δt², c = 2 ζ sqrt(K m) with K the summed stiffness of the wall's contacts, "
-		"at most 1 % of the target a step. Stable for any stiffness. While nothing touches it the wall closes at maxVelocity. "
-		"Once it has reached its target the dashpot lets the mean velocity of the last 100 steps pass, so that a wall that keeps moving carries its target all the same. "
-		"A specimen of stiff grains that is sheared fast pushes the wall outwards faster than by 1 % of the target a step: give maxRetreat then. "
+		"and the same limits of the velocity. Stable for any stiffness. While nothing touches it the wall closes at maxVelocity. "
+		"Once it has reached its target and stopped closing, the dashpot lets the mean velocity of the last 100 steps pass, so that a wall that keeps moving carries its target all the same. "
+		"A specimen of stiff grains that is sheared fast pushes the wall outwards faster than these limits: give maxRetreat then. "
 		"A wall that would have to move faster still does not carry its target: see atLimit.\n\n"
 		"With O.trackEnergy the work is booked as 'wallWork', negative like YADE's other work from outside. All state is saved.\n\n"
 		"Errors: a missing or erased wall or platen, a body of another shape, values that are missing or have the wrong sign, "
@@ -49,7 +49,7 @@ private:
 		((Real,height,NaN,,"Height of the specimen [m], when no platens are given."))
 		((Real,damping,HEXMEMBRANE_SERVO_DAMPING_DEFAULT,,"Damping ratio ζ, " HEXMEMBRANE_SERVO_DAMPING_RANGE "; 1 is critical for the contacts alone."))
 		((Real,maxVelocity,NaN,,"Largest velocity of the radius [m/s], and the one of the approach. Required."))
-		((Real,maxRetreat,NaN,,"Largest velocity of the radius outwards [m/s]; NaN: the limit inwards, maxVelocity and 1 % of the target a step."))
+		((Real,maxRetreat,NaN,,"Largest velocity of the radius outwards [m/s]; NaN: the limits inwards."))
 		((Real,tolerance,HEXMEMBRANE_SERVO_TOLERANCE_DEFAULT,,"Relative error of the stress, " HEXMEMBRANE_SERVO_TOLERANCE_RANGE
 			", below which the servo counts as settled."))
 		((Real,timeLimit,NaN,,

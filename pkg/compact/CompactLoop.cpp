@@ -78,6 +78,12 @@ public:
 		return {load.load.force + loop.outsideOn[b], load.normalForce, load.normalStiffness, load.count, ""};
 	}
 	Real stiffness(Body::id_t boundary, const Vector3r& along) override { return state.spheres.boundaryContacts[require(boundary)].stiffness(along); }
+	Real touchingMass(Body::id_t boundary) override
+	{
+		Real sum = 0;
+		state.spheres.boundaryContacts[require(boundary)].forEachTouching([&](int sphere, const auto&) { sum += state.spheres.mass[sphere]; });
+		return sum;
+	}
 	void forEachContact(const VisitContact& visit) override { loop.visitWithEngines(state.spheres.places, state.spheres.shapes(), visit); }
 
 private:

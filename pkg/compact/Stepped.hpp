@@ -99,6 +99,8 @@ public:
 	virtual ContactSums contacts(Body::id_t boundary) = 0;
 	//! Stiffness of a boundary's contacts along a unit vector: sum of kn c^2 + ks (1 - c^2), c the cosine between normal and vector (N/m).
 	virtual Real stiffness(Body::id_t boundary, const Vector3r& along) = 0;
+	//! Mass of the spheres that touch a boundary (kg).
+	virtual Real touchingMass(Body::id_t boundary) = 0;
 	//! Calls visit for every touching contact, those that engines make included: of this step when they stand before the one that asks.
 	virtual void forEachContact(const VisitContact& visit) = 0;
 };

@@ -30,19 +30,21 @@ void SoilStressServo::prepare()
 
 void SoilStressServo::action() { stepOverBodies(*this); }
 
-bool SoilStressServo::arrived() const
+Real SoilStressServo::arrived() const
 {
-	if (drive) return drive->settled;
-	constexpr Real near = 0.01;
-	return pressure->timeConstant == std::numeric_limits<Real>::infinity() ||
-	       math::abs(pressure->transmitted - pressure->pressure) <= near * pressure->pressure;
+	if (drive) return drive->carried();
+	if (pressure->timeConstant == std::numeric_limits<Real>::infinity()) return 1; // an open loop measures nothing
+	return pressure->transmitted / pressure->pressure;
 }
 
 void SoilStressServo::step(StepView& view)
 {
 	if (drive && drive->mode != "stress") return;
-	if (arrived() || math::isnan(lastCorrection))
-		loop().close(*scene, stress, [&] {
+	// with less of the load the soil's stress is mostly what it had before
+	constexpr Real telling = 0.5;
+	const Real share = arrived();
+	if (share >= telling || math::isnan(lastCorrection))
+		loop().close(*scene, share >= telling ? share * stress : stress, [&] {
 			const Matrix3r middle = measure->measure(*scene, view).middle;
 			return drive ? middle(2, 2) : 0.5 * (middle(0, 0) + middle(1, 1));
 		});

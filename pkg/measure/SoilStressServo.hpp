@@ -23,8 +23,8 @@ public:
 private:
 	PressureLoop loop();
 	void requireReached();
-	//! Whether the engine of the load has reached what it was asked for.
-	bool arrived() const;
+	//! What has arrived of the load that was asked for, as a share of it; 1 where nobody can tell.
+	Real arrived() const;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(SoilStressServo,GlobalEngine,
@@ -35,9 +35,10 @@ private:
 		"the membrane's inner surface encloses less than the platen's face, the membrane pulls at the O-rings, "
 		"and rows beside the platens that are pressed radially have no axial share. "
 		"A transmitted pressure of σ3 does not give it a radial stress of σ3 either: the sheet rests on grains that reach beyond the mean inner surface.\n\n"
-		"An integral controller multiplies the load by a factor f: T df/dt = (σ - σs)/σ with σs the soil's stress, within 1/maxFactor and maxFactor, "
+		"An integral controller multiplies the load by a factor f: T df/dt = (a σ - σs)/(a σ) with σs the soil's stress, within 1/maxFactor and maxFactor, "
 		"corrected 20 times within T; the load's engine gets f σ in every step. "
-		"The factor waits while that engine is not within a hundredth of what it was asked for: what does not arrive yet is no error of the factor. "
+		"a is the share of f σ that has arrived at the platen or the sheet: what does not arrive yet is no error of the factor. "
+		"Below a half of it the factor waits. "
 		"It rests while the drive is in mode 'velocity'; ``dead=True`` leaves a pressure as it is.\n\n"
 		"Errors: ``ValueError`` for parameters, ``RuntimeError`` for what is missing.\n\n"
 		"Example::\n\n\tSoilStressServo(measure=SoilMeasure(membrane=m,bottomPlaten=0,topPlaten=1),drive=top,stress=100e3,timeConstant=.01)",

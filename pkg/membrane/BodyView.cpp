@@ -281,6 +281,16 @@ Real BodyView::stiffness(Body::id_t boundary, const Vector3r& along)
 	return sum;
 }
 
+Real BodyView::touchingMass(Body::id_t boundary)
+{
+	Real sum = 0;
+	for (const auto& [other, contact] : (*scene.bodies)[boundary]->intrs) {
+		const Body* body = contact->isReal() ? livingBody(*scene.bodies, other) : nullptr;
+		if (body) sum += body->state->mass;
+	}
+	return sum;
+}
+
 namespace {
 
 //! As TouchingContact::friction.

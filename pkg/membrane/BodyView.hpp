@@ -25,6 +25,7 @@ public:
 	vector<Vector3r> contactForces(const HexMembrane& membrane) override;
 	ContactSums contacts(Body::id_t boundary) override;
 	Real stiffness(Body::id_t boundary, const Vector3r& along) override;
+	Real touchingMass(Body::id_t boundary) override;
 	void forEachContact(const VisitContact& visit) override;
 
 private:

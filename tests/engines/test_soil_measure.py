@@ -186,6 +186,22 @@ def test_servoBringsTheSoilToItsTarget(O, tier):
 	assert drive.stress == servo.factor * 30
 
 
+def test_servoKnowsItsFactorBeforeTheLoadHasArrived(O, tier):
+	"""A load that takes time constants to come counts as far as it has come: the factor is nearly right when it is there, and was never wound up."""
+	drive, servo = servoed(tier, maxFactor=4.0)
+	drive.area *= 2
+	drive.maxVelocity = 1e-4
+	highest, touched = 0.0, 0
+	while not drive.settled:
+		run(50)
+		highest = max(highest, servo.measure.stress()["middle"][2, 2])
+		touched = touched or (drive.force > 0) * O.iter
+		assert O.iter < 200000
+	assert O.iter - touched > 5 * 400 and servo.factor == pytest.approx(0.5, rel=0.04)
+	run(2000)
+	assert max(highest, servo.measure.stress()["middle"][2, 2]) < 1.02 * 30 and servo.settled
+
+
 def test_servoRestsWhileTheDriveHasAVelocity(O, tier):
 	drive, servo = servoed(tier, target=20.0)
 	run(4000)

@@ -48,14 +48,16 @@ TEST(PlatenServo, FreePlatenFollowsNewton)
 
 TEST(PlatenServo, LimitsOfTheRecipe)
 {
-	const PlatenServo servo = makePlatenServo(1e6, 1e-5, 100, 1, nan, nan);
+	const PlatenServo servo = makePlatenServo(1e6, 1e-6, 1e-5, 100, 1, nan, nan);
 	EXPECT_NEAR(servo.mass, 4e-4, 1e-18);
 	EXPECT_NEAR(servo.viscosity, 2 * std::sqrt(1e6 * 4e-4), 1e-12);
-	EXPECT_NEAR(servo.maxVelocity * 1e-5 * 1e6, 1, 1e-12); // 1 % of the target a step
+	EXPECT_NEAR(servo.maxVelocity * 1e-5 * 1e6, 10, 1e-12); // a tenth of the target a step
 	EXPECT_EQ(servo.maxRetreat, servo.maxVelocity);
-	EXPECT_EQ(makePlatenServo(1e6, 1e-5, 100, 1, 0.5, nan).mass, 0.5);
-	EXPECT_EQ(makePlatenServo(1e6, 1e-5, 100, 1, nan, 0.01).maxVelocity, 0.01);
-	EXPECT_NEAR(makePlatenServo(1e6, 1e-5, 100, 1, nan, 1e3).maxVelocity, 0.1, 1e-15);
+	EXPECT_EQ(makePlatenServo(1e6, 1e-6, 1e-5, 100, 1, 0.5, nan).mass, 0.5);
+	EXPECT_EQ(makePlatenServo(1e6, 1e-6, 1e-5, 100, 1, nan, 0.01).maxVelocity, 0.01);
+	EXPECT_NEAR(makePlatenServo(1e6, 1e-6, 1e-5, 100, 1, nan, 1e3).maxVelocity, 1, 1e-14);
+	// heavy spheres: a twentieth of the target over the impedance sqrt(K M), whatever the step is
+	for (const double dt : {1e-7, 1e-6}) EXPECT_NEAR(makePlatenServo(1e6, 1e-2, dt, 100, 1, nan, nan).maxVelocity, 0.05 * 100 / 100., 1e-14);
 }
 
 // A chain of equal masses and springs on a fixed floor under the servo, in the order of a YADE step. Grains have no damping of their own.
@@ -89,7 +91,7 @@ struct Chain {
 			v[i] += dt * f / mass;
 			x[i] += dt * v[i];
 		}
-		PlatenServo servo = makePlatenServo(stiffness, dt, target, 1, nan, nan);
+		PlatenServo servo = makePlatenServo(stiffness, mass, dt, target, 1, nan, nan);
 		if (floorVelocity > 0) servo.maxRetreat = 1e9;
 		platenVelocity = servoVelocity(servo, platenVelocity, dt, target, force[n], flow);
 		if (flows) flow = servoFlow(flow, platenVelocity);
@@ -123,7 +125,7 @@ TEST(PlatenServo, CarriesItsTargetWhileItHasToMove)
 	for (const double stiffness : {1e3, 1e7})
 		for (const int grains : {1, 5, 40}) {
 			const double mass = 1e-5, dt = 0.3 * std::sqrt(mass / stiffness), target = 1;
-			const PlatenServo servo = makePlatenServo(stiffness, dt, target, 1, nan, nan);
+			const PlatenServo servo = makePlatenServo(stiffness, mass, dt, target, 1, nan, nan);
 			for (const bool flows : {false, true}) {
 				Chain chain(grains, stiffness, mass, dt, 5 * target / stiffness);
 				for (int i = 0; i < 40000; i++) chain.step(target);

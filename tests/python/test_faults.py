@@ -111,7 +111,7 @@ def test_folderGone(harmedHere, tmp_path, monkeypatch):
 
 
 def test_folderRemoved(harmedHere, monkeypatch):
-	after(monkeypatch, 6, lambda: shutil.rmtree(harmedHere.out))
+	after(monkeypatch, 3, lambda: shutil.rmtree(harmedHere.out))
 	code, errors = harmedHere.run()
 	assert code == 1 and "records.csv': cannot be written (it was removed while the test was running); fix: " in errors
 	monkeypatch.undo()

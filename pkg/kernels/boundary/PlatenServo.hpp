@@ -25,22 +25,26 @@ struct PlatenServo {
 };
 
 /// Largest share of the target force by which the contact force may change in one step.
-constexpr double servoForcePerStep = 0.01;
+constexpr double servoForcePerStep = 0.1;
+
+/// Largest share of the target force that the inertia of what the platen meets may answer with.
+constexpr double servoImpact = 0.05;
 
 /// Mass of a servo platen in units of K dt^2.
 constexpr double servoMassFactor = 4;
 
-/// The servo for a platen whose contacts have the summed stiffness K > 0 (N/m), with step dt (s), target force (N), damping ratio (1: critical) and two
-/// settings that may be NaN: a mass (kg) to take instead, and a velocity limit (m/s).
+/// The servo for a platen whose contacts have the summed stiffness K > 0 (N/m) and the mass M >= 0 (kg) of touching spheres, with step dt (s), target force (N),
+/// damping ratio (1: critical) and two settings that may be NaN: a mass (kg) to take instead, and a velocity limit (m/s).
 ///   mass         m = 4 K dt^2            so that the platen's own frequency is sqrt(K/m) = 1/(2 dt). Against contacts whose far ends move too it is at most
 ///                                        sqrt(2K/m) (Gershgorin), a factor 2.8 below the leapfrog limit 2/dt, whatever K is.
 ///   viscosity    c = 2 ratio sqrt(K m)   critical for the contacts alone; the specimen behind them is softer, and more than critically damped.
-///   maxVelocity  servoForcePerStep * target/(K dt), so that an impact cannot overshoot: what the platen meets, it meets over 100 steps or more.
+///   maxVelocity  servoImpact * target/sqrt(K M), so that an impact cannot overshoot: a body that is met at v answers with its impedance, rho c A = sqrt(K M)
+///                for layers of grains. It is a velocity of the specimen and the same at any step. At most servoForcePerStep * target/(K dt).
 ///   maxRetreat   the same
-inline PlatenServo makePlatenServo(double stiffness, double dt, double target, double dampingRatio, double givenMass, double givenLimit)
+inline PlatenServo makePlatenServo(double stiffness, double touchingMass, double dt, double target, double dampingRatio, double givenMass, double givenLimit)
 {
 	const double mass = std::isnan(givenMass) ? servoMassFactor * stiffness * dt * dt : givenMass;
-	const double limit = servoForcePerStep * target / (stiffness * dt);
+	const double limit = target / std::max(std::sqrt(stiffness * touchingMass) / servoImpact, stiffness * dt / servoForcePerStep);
 	const double fastest = std::isnan(givenLimit) ? limit : std::min(limit, givenLimit);
 	return {mass, 2 * dampingRatio * std::sqrt(stiffness * mass), fastest, fastest};
 }

@@ -214,7 +214,7 @@ class Consolidation:
 	)
 	stressTime: Optional[float] = key(
 		None,
-		"time constant of the loops that are closed on the soil; none: 10 d sqrt(rho/pressure) axially and 20 radially, d the mean grain diameter",
+		"time constant of the loops that are closed on the soil; none: 5 d sqrt(rho/pressure) axially and 10 radially, d the mean grain diameter",
 		"s",
 		low=0,
 		openLow=True,

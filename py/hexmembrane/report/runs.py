@@ -9,6 +9,7 @@ import re
 import numpy as np
 
 from hexmembrane.configuration import Config, ConfigError
+from hexmembrane.configuration.config import Output
 from hexmembrane.configuration.reader import read as readYaml
 from hexmembrane.configuration.schema import build
 from hexmembrane.configuration.stages import ISOTROPIC, MEMBRANE, plan
@@ -16,8 +17,6 @@ from hexmembrane.output import records, tables
 
 #: Folder of a study's stages under it, and the one of a test in a stage, see scripts/sweep.
 _STUDY, _STAGES, _TEST = "plan.json", "stages", "test"
-#: The strain of a test that has ended is its last row's, to this share.
-_ENDED = 1e-3
 #: How the state of a test ends that is not at its end.
 _HALF = ": not at its end"
 #: Strains below this are told as 0.
@@ -114,7 +113,7 @@ class Run:
 		if not shear:
 			return "consolidation, no shear yet" if self.rows("consolidation") else "no rows yet"
 		strain = _told(shear["axial_strain"][-1])
-		ended = isinstance(wanted, (int, float)) and strain >= (1 - _ENDED) * wanted
+		ended = isinstance(wanted, (int, float)) and strain >= (1 - 0.5 / self.key("output", "records", Output.records)) * wanted
 		return f"sheared to {100 * strain:.4g} %" + ("" if ended or wanted is None else f" of {100 * wanted:.4g} %{_HALF}")
 
 	def _stateOfStages(self):

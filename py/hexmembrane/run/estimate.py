@@ -2,7 +2,7 @@
 """What a test needs, told before anything is made: steps, time, memory, disk. What is beyond the machine is refused. Uses nothing of YADE.
 
 Estimates, good to a factor of two: the time step is that of the grains, the membrane's contacts and its bonds; what comes after the pressure's rise
-is taken to last 1.5 times as long as the rise.
+is taken to last 0.3 times as long as the rise.
 """
 
 import dataclasses
@@ -112,7 +112,7 @@ class Estimate:
 		stages = plan(config)
 		rises = [_changeTime(config, radii, stage) / step for stage in stages if stage.kind in (CONSOLIDATION, MEMBRANE)]
 		rise = max(rises)
-		consolidation = sum(min(2.5 * steps + config.output.consolidationSteps, config.consolidation.maxSteps) for steps in rises)
+		consolidation = sum(min(1.3 * steps + config.output.consolidationSteps, config.consolidation.maxSteps) for steps in rises)
 		sheared = _seconds(config, radii, stages) / step
 		spheres = len(radii) + particles
 		frames = sum(stage.records for stage in stages) / config.output.vtkEvery + 2 * (len(stages) - 1) if config.output.vtkEvery else 0

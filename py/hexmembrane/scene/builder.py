@@ -160,7 +160,7 @@ def _axialServo(config, radii, measure, drive):
 	keys = config.consolidation
 	if keys.axial != "soil":
 		return []
-	time = keys.stressTime or 10 * timestep.inertialTime(radii, config.specimen.density, keys.pressure)
+	time = keys.stressTime or 5 * timestep.inertialTime(radii, config.specimen.density, keys.pressure)
 	return [yade.SoilStressServo(measure=measure, drive=drive, stress=0.0, timeConstant=time, maxFactor=keys.maxFactor)]
 
 
@@ -174,7 +174,7 @@ def radialServo(config, radii, measure, lateral):
 	if "MembranePressure" not in byName or (keys.radial or ("soil" if closed else "transmitted")) != "soil":
 		return []
 	loads = {"pressure": byName["MembranePressure"], "beside": byName.get("MembraneRadialServo")}
-	time = keys.stressTime or 20 * timestep.inertialTime(radii, config.specimen.density, keys.pressure)
+	time = keys.stressTime or 10 * timestep.inertialTime(radii, config.specimen.density, keys.pressure)
 	return [yade.SoilStressServo(measure=measure, stress=0.0, timeConstant=time, maxFactor=keys.maxFactor, **loads)]
 
 
