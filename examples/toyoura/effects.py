@@ -6,7 +6,8 @@ laboratory's cell pressure is: the membrane's hoop tension then presses on the s
 membrane in it, and that of the soil alone. Differences are of pairs of the same packing.
 
 ``grains``: the best set's grains, more and smaller, at the same porosity inside and the same inertial number. A wall loosens its layer: the porosity of
-the cylinder is that inside plus LAYER times the walls' area times d over the volume.
+the cylinder is that inside plus LAYER times the walls' area times d over the volume. Platens are wider than the specimen, as a laboratory's lubricated ones are: small
+grains pass the edge of narrow ones.
 
 A second call goes on. --tables runs nothing.
 """
@@ -45,6 +46,8 @@ THIN_TUBE = (0.38, 0.24)
 GRAINS = {600: 8, 4000: 4, 14600: 3, 49000: 1}
 #: R/r of the membrane where it is not the calibration's.
 SIZE_RATIO = {14600: 0.8, 49000: 0.8}
+#: The platens' radius over the specimen's.
+PLATENS = 1.4
 #: Measured: 7,045 grains in 40 x 80 mm, 15.4 d50 across, have 0.389 in all and 0.3591 inside (pkg/specimen/README.md).
 LAYER = (0.389 - 0.3591) / (4 / 15.4 + 2 / 30.8)
 
@@ -91,7 +94,7 @@ def scaled(base, folder, wanted, slower=1.0):
 		d = diameter * (first.specimen.grains / grains) ** (1 / 3)
 		for k in range(packings):
 			own = {**values, "specimen.grains": grains, "specimen.porosity": inner + layered(first, d), studyfile.SEED: predict.FIRST_SEED + k}
-			own |= {"shear.velocity": base.shear.velocity * diameter / d / slower}
+			own |= {"shear.velocity": base.shear.velocity * diameter / d / slower, "platens.radius": PLATENS * base.specimen.radius}
 			if grains in SIZE_RATIO:
 				own["membrane.sizeRatio"] = SIZE_RATIO[grains]
 			case = {"grains": grains, "across": 2 * first.specimen.radius / d, "packing": k}

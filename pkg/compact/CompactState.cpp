@@ -40,7 +40,7 @@ CompactState::SphereRow CompactState::sphereOf(const Body& body, bool ofSheet)
 	const Real radius = static_cast<const Sphere&>(*body.shape).radius;
 	hexmembrane::requirePositive("O.bodies[" + std::to_string(id) + "].shape.radius", radius, "m");
 	const Real inertia = fixed || turns ? state.inertia[0] : std::numeric_limits<Real>::infinity();
-	return {static_cast<int>(id), {state.pos, radius}, {state.vel, state.angVel}, state.mass, inertia, materialIndex(body), fixed};
+	return {static_cast<int>(id), {state.pos, radius}, {state.vel, state.angVel}, state.mass, inertia, materialIndex(body), fixed, body.groupMask};
 }
 
 void CompactState::addBoundary(const Body& body)
@@ -51,7 +51,7 @@ void CompactState::addBoundary(const Body& body)
 	if (body.state->blockedDOFs != State::DOF_ALL)
 		refuseBody(body.getId(), "is a boundary that is free to move", "dynamic=False, or give it a PlatenDrive");
 	const State& state = *body.state;
-	spheres.boundaries.push_back({(*make)(*body.shape, state), state.pos, state.vel, state.angVel, materialIndex(body)});
+	spheres.boundaries.push_back({(*make)(*body.shape, state), state.pos, state.vel, state.angVel, materialIndex(body), body.groupMask});
 	boundaryIds.push_back(body.getId());
 }
 
@@ -88,13 +88,16 @@ CompactState::CompactState(const Scene& scene, const Sheet& given) : sheet(given
 {
 	const std::set<Body::id_t> ofSheet = sheet.ids ? std::set<Body::id_t>(sheet.ids->begin(), sheet.ids->end()) : std::set<Body::id_t>();
 	vector<SphereRow> rows;
-	int common = -1;
+	int common = -1, any = 0;
 	for (const auto& b : *scene.bodies) {
 		if (!b) continue;
-		if ((common & b->groupMask) == 0)
-			refuseBody(b->getId(), "has a mask with no bit in common with all before it, so some pairs would not meet",
-			           "give all bodies one common bit (the membrane a second one), or use the reference tier");
-		common &= b->groupMask;
+		if (dynamic_cast<const Sphere*>(b->shape.get())) {
+			if ((common & b->groupMask) == 0)
+				refuseBody(b->getId(), "has a mask with no bit in common with all spheres before it, so some pairs would not meet",
+				           "give all spheres one common bit (the membrane a second one), or use the reference tier");
+			common &= b->groupMask;
+			any |= b->groupMask;
+		}
 		if (ofSheet.count(b->getId())) continue;
 		if (b->isClump()) refuseBody(b->getId(), "is a clump or of one", "use single spheres, or the reference tier");
 		if (dynamic_cast<const Sphere*>(b->shape.get()))
@@ -109,6 +112,10 @@ CompactState::CompactState(const Scene& scene, const Sheet& given) : sheet(given
 	const int grainCount = static_cast<int>(rows.size());
 	if (sheet.ids) collectSheet(scene, rows);
 	if (rows.empty()) throw std::runtime_error("CompactLoop: there are no spheres in the scene; fix: add some first");
+	for (size_t i = 0; i < boundaryIds.size(); ++i)
+		if ((any & spheres.boundaries[i].mask) == 0)
+			refuseBody(boundaryIds[i], "has a mask with no bit of any sphere's, so it would meet none",
+			           "give it a bit of those that it is to meet");
 	spheres.setSpheres(rows, grainCount);
 	refreshMaterials();
 }

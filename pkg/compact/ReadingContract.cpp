@@ -28,7 +28,7 @@ vector<ReadingRow> makeContract()
 	        {"Body", "number of bodies", "watched", "bodies may come and go; a membrane's must stay"},
 	        {"Body", "material", "watched", "must be a LinearMat"},
 	        {"Body", "shape", "watched", "Sphere, or a boundary that is registered (" + BoundaryRegistry::names() + ")"},
-	        {"Body", "mask", "watched", "all bodies must have one bit in common"},
+	        {"Body", "mask", "watched", "all spheres must have one bit in common; a boundary meets those that it has a bit in common with"},
 	        {"Body", "clumpId", "refused", "no clumps"},
 	        {"Body", "bounded", "refused", "a body that no collider sees"},
 	        {"Body", "aspherical", "refused", "no aspherical bodies"},

@@ -6,6 +6,22 @@ from contractScene import BEFORE, Put, Row, addGrain, body, clump, other, perman
 from tiers import loop
 from yade import O, Vector3
 
+
+
+def sparing(scene):
+	"""Platens, and grains, of a mask of their own beside the common one: they do not meet the membrane."""
+	grains = range(min(scene.ids["bottom"], scene.ids["top"]))
+	before = {i: O.bodies[i].mask for i in (*grains, scene.ids["bottom"], scene.ids["top"])}
+	for i in before:
+		O.bodies[i].mask = 5 if i in grains else 4
+
+	def undo():
+		for i, mask in before.items():
+			O.bodies[i].mask = mask
+
+	return undo
+
+
 BLOCKED = ("x", "xyz", "XYZ", "xyzXYZ", "yZ")
 ROWS = {
 	# a grain
@@ -76,6 +92,7 @@ ROWS = {
 	"the wall's spin about its axis": body("wall", "wall", "state.angVel", (0, 0, 20)),
 	"the wall's spin about another axis": body("wall", "wall", "state.angVel", (5, 0, 0)),
 	"the wall's mat": body("wall", "wall", "mat", other(), remake=True),
+	"the platens' mask, without the membrane's bits": Row("central", sparing, must="acts", effect=None, at=(0,)),
 	"the wall's mask": body("wall", "wall", "mask", 4, must="refused"),
 	"the wall's blockedDOFs": body("wall", "wall", "state.blockedDOFs", "zXYZ", must="refused"),
 	# O-rings: their motion is the engine's

@@ -104,7 +104,7 @@ std::map<int, Load> bruteForce(const SphereAssembly& flat)
 	for (const Boundary& boundary : flat.boundaries)
 		for (int i = 0; i < flat.spheres(); ++i) {
 			const auto touch = boundary.shape->touch(flat.places[i]);
-			if (touch.overlap < 0) continue;
+			if (touch.overlap < 0 || !(flat.mask[i] & boundary.mask)) continue;
 			const ContactLaw law = boundaryLaw(flat.materialOf(boundary.material), flat.materialOf(flat.material[i]), flat.places[i].radius);
 			const Vec3 arm = touch.point - flat.places[i].centre, armB = touch.point - boundary.centre;
 			const Vec3 v = flat.motions[i].velocity + flat.motions[i].spin.cross(arm) - boundary.velocity - boundary.spin.cross(armB);
@@ -140,6 +140,29 @@ TEST(SphereAssembly, loadsAreThoseOfEveryPair)
 		EXPECT_GT(flat.contacts.size(), 100);
 		EXPECT_GT(flat.smooth.size(), 50);
 	}
+}
+
+// Grains meet both boundaries, particles the cylinder alone; the order of the grains changes on the way.
+TEST(SphereAssembly, boundariesMeetThoseOfTheirMask)
+{
+	SphereAssembly flat = randomScene(200, 300);
+	for (int i = 0; i < flat.spheres(); ++i) flat.mask[i] = i < flat.grains() ? 1 | 4 : 1 | 2;
+	flat.mask[7] = 1; // one grain that the platen does not meet either
+	flat.boundaries[0].mask = 4;
+	flat.makeLists();
+	flat.computeLoads(dt, 1);
+	EXPECT_LT(largestDifference(bruteForce(flat), byId(flat)), 1e-13);
+	const auto meets = [&](int b) {
+		int grains = 0, particles = 0;
+		flat.boundaryContacts[b].forEachNear([&](int i) {
+			(i < flat.grains() ? grains : particles) += 1;
+			EXPECT_FALSE(b == 0 && flat.id[i] == 107);
+		});
+		return std::make_pair(grains, particles);
+	};
+	EXPECT_GT(meets(0).first, 5);
+	EXPECT_EQ(meets(0).second, 0);
+	EXPECT_GT(meets(1).second, 5);
 }
 
 TEST(SphereAssembly, listsMissNothingAndMemoriesMoveOver)

@@ -17,6 +17,7 @@ struct Boundary {
 	Vec3 centre;         ///< about which its torque counts (m)
 	Vec3 velocity, spin; ///< of its surface (m/s, rad/s about the centre)
 	int material;        ///< index in the table of materials
+	int mask = ~0;       ///< it meets spheres that have a bit of it
 };
 
 /// What a boundary receives in a step: load about its centre, summed normal forces (N) and normal stiffnesses (N/m) of its contacts.

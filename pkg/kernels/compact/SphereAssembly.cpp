@@ -35,6 +35,7 @@ void SphereAssembly::setSpheres(const std::vector<Sphere>& all, int count)
 	fill(inertia, [](const Sphere& s) { return s.inertia; });
 	fill(material, [](const Sphere& s) { return s.material; });
 	fill(fixed, [](const Sphere& s) { return s.fixed; });
+	fill(mask, [](const Sphere& s) { return s.mask; });
 	turned.assign(count, Vec3::Zero());
 	outside.clear();
 	contacts = {};
@@ -148,6 +149,7 @@ void SphereAssembly::permuteGrains(const std::vector<int>& from)
 	permute(places);
 	permute(motions);
 	permute(mass);
+	permute(mask);
 	permute(inertia);
 	permute(material);
 	permute(fixed);
@@ -230,7 +232,7 @@ void SphereAssembly::buildLists(const std::vector<int>& newIndex)
 	for (std::size_t b = 0; b < boundaries.size(); ++b) {
 		std::vector<int> near;
 		for (int i = 0; i < spheres(); ++i)
-			if (listedShapes[b]->near({listed[i], places[i].radius}, gap)) near.push_back(i);
+			if ((mask[i] & boundaries[b].mask) && listedShapes[b]->near({listed[i], places[i].radius}, gap)) near.push_back(i);
 		sums.works += boundaryContacts[b].rebuild(std::move(near), newIndex, kinds, [&](int i) { return springsOf(boundaries[b], i); });
 	}
 }

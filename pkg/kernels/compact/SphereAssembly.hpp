@@ -26,7 +26,8 @@ public:
 		Motion motion;
 		double mass, inertia; ///< kg, kg m2
 		int material;
-		bool fixed; ///< moves at its velocity whatever acts on it
+		bool fixed;   ///< moves at its velocity whatever acts on it
+		int mask = 1; ///< a boundary whose mask has no bit of it does not meet it
 	};
 	void setSpheres(const std::vector<Sphere>& spheres, int grains);
 	/// \param skin (m), > 0
@@ -112,6 +113,7 @@ public:
 	std::vector<double> mass, inertia;
 	std::vector<int> material;
 	std::vector<unsigned char> fixed;
+	std::vector<int> mask;
 	std::vector<Load> outside; ///< loads from elsewhere, held for the step; empty: none
 	std::vector<Vec3> turned;  ///< rotation of each grain since this was last zeroed (rad)
 	std::vector<Boundary> boundaries;

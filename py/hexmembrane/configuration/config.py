@@ -169,6 +169,14 @@ class Wall:
 class Platens:
 	"""The two rigid end platens."""
 
+	radius: Optional[float] = key(
+		None,
+		"radius of the faces; none: the specimen's; larger: as laboratories have with lubricated ends, over which the specimen widens. The membrane is then held at the "
+		"specimen's radius as before and does not meet the platens",
+		"m",
+		low=0,
+		openLow=True,
+	)
 	thickness: Optional[float] = key(None, "thickness; none: the membrane's end rows plus twice the largest travel", "m", low=0, openLow=True)
 	friction: float = shared("friction", "coefficient of friction on the platens, no rolling friction; with grains the lesser of both acts", default=0.3, high=5)
 	consolidationFriction: Optional[float] = shared(
@@ -352,6 +360,8 @@ class Config:
 		config.given = frozenset(paths(values if isinstance(values, dict) else toDict(config)))
 		if config.membrane.placement == "centred" and config.membrane.particleRadius is None:
 			raise ConfigError("membrane.placement", "centred", "the soil's radius then follows from the particle's radius", "give membrane.particleRadius")
+		if config.platens.radius is not None and config.platens.radius < config.specimen.radius:
+			raise ConfigError("platens.radius", config.platens.radius, f"the specimen of radius {config.specimen.radius:g} m stands over it", "give that at least, or leave it out")
 		for name in PATHS:
 			path = getattr(config.specimen, name)
 			if path is not None:

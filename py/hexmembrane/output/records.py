@@ -41,8 +41,8 @@ COLUMNS = (
 	Column(
 		"q_cell",
 		"Pa",
-		"what a load cell at the platens and a laboratory's area correction show: (F - sigma3_target Ae)/Am, F mean platen force, Ae face of a platen "
-		"(pi r^2 in a rigid wall), Am mean area V/h; the membrane's pull and sag are in it; compression positive",
+		"what a load cell at the platens and a laboratory's area correction show: (F - sigma3_target Ae)/Am, F mean platen force, Ae the specimen's end "
+		"(pi R^2 of the inner surface at first, pi r^2 in a rigid wall), Am mean area V/h; the membrane's pull and sag are in it; compression positive",
 	),
 	Column("sigma3_target", "Pa", "sigma3: pressure asked for, that the soil is to have; pushes inwards"),
 	Column(

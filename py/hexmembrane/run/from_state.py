@@ -156,6 +156,7 @@ def _facts(config, boundary):
 			found.append((f"{owner}.{names.get(name, name) if owner == section else name}", value, getattr(material, name)))
 	keys = config.specimen
 	found += [("specimen.density", keys.density, O.materials["grain"].density), ("specimen.rollingFriction", keys.rollingFriction, O.materials["grain"].rollingFriction)]
+	found.append(("platens.radius", config.platens.radius, O.bodies[Scene().topDrive.platen].shape.radius))
 	if cement := Scene().cement:
 		names = config.cement.properties() if config.cement.given else ()
 		has = {name: math.degrees(cement.frictionAngle) if name == "frictionAngle" else getattr(cement, name) for name in names}

@@ -10,7 +10,7 @@ from yade import O, utils
 from hexmembrane.configuration.stages import boundaries
 from hexmembrane.scene import timestep
 from hexmembrane.scene.boundaries import CLASSES
-from hexmembrane.scene.flexible_membrane import MASK, overhang
+from hexmembrane.scene.flexible_membrane import MASK, WIDE, overhang, wide
 from hexmembrane.scene.handles import Scene, compactLoop
 from hexmembrane.scene.platens import platen
 
@@ -53,7 +53,8 @@ def _platens(config, parts, laterOverhang):
 	thickness = config.platens.thickness or max(parts.overhang, laterOverhang) + travel
 	ids = []
 	for z, facing in ((0.0, 1), (config.specimen.height, -1)):
-		ids.append(O.bodies.append(platen((0, 0, z), parts.platenRadius, thickness, facing=facing, material=O.materials["platen"])))
+		made = platen((0, 0, z), parts.platenRadius, thickness, facing=facing, material=O.materials["platen"], mask=WIDE if wide(config) else 1)
+		ids.append(O.bodies.append(made))
 	return ids
 
 
@@ -127,7 +128,8 @@ def build(config, packing, say=print):
 	"""
 	_wantEmpty()
 	_materials(config)
-	grains = O.bodies.append([utils.sphere(tuple(c), r, material="grain") for c, r in zip(packing.centres.tolist(), packing.radii.tolist())])
+	mask = 1 | WIDE if wide(config) else 1
+	grains = O.bodies.append([utils.sphere(tuple(c), r, material="grain", mask=mask) for c, r in zip(packing.centres.tolist(), packing.radii.tolist())])
 	if config.specimen.massScaling:
 		_raiseMasses(config, grains, packing.radii, say)
 	parts = CLASSES[config.boundary].make(config, packing)

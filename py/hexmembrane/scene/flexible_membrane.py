@@ -2,7 +2,8 @@
 """The flexible membrane as a test's lateral boundary.
 
 Masks: grains and platens carry bit 1, membrane spheres bits 1 and 2, and the collider leaves out pairs that share bit 2: the
-membrane meets grains and platens but not itself.
+membrane meets grains and platens but not itself. Platens that are wider than the specimen carry bit 4 alone, and grains bits 1 and 4: the O-ring rows stand
+inside such platens.
 """
 
 import dataclasses
@@ -21,6 +22,13 @@ from hexmembrane.scene.sheet_state import sheetState
 MOST_STRETCHED, MOST_SAG = 0.25, 0.05
 #: Bit of the membrane's spheres in a body's mask.
 MASK = 2
+#: Bit of platens that the membrane does not meet, and of the grains with them.
+WIDE = 4
+
+
+def wide(config):
+	"""Whether the platens are wider than the specimen, so that the membrane does not meet them."""
+	return config.platens.radius is not None and config.platens.radius > config.specimen.radius
 
 
 def platenRows(wished, particleRadius, smallest):
@@ -200,7 +208,7 @@ class FlexibleMembrane(LateralBoundary):
 
 		return BoundaryParts(
 			engines=engines,
-			platenRadius=soil.radius,
+			platenRadius=config.platens.radius or soil.radius,
 			overhang=membrane.rings * membrane.ringSpacing - soil.height,
 			smallestRadius=membrane.sphereRadius,
 			criticalStep=math.sqrt(scaling) * unscaled,
@@ -280,7 +288,7 @@ class FlexibleMembrane(LateralBoundary):
 		return self.membrane.enclosedVolume(bottom, top)
 
 	def endArea(self, face):
-		return face
+		return math.pi * self.membrane.innerRadius**2
 
 	def pressedArea(self, bottom, top):
 		return self.pressureEngine.area

@@ -49,7 +49,7 @@ class RigidWall(LateralBoundary):
 
 		return BoundaryParts(
 			engines=engines,
-			platenRadius=_PLATENS * packing.radius,
+			platenRadius=config.platens.radius or _PLATENS * packing.radius,
 			overhang=0.0,
 			smallestRadius=math.inf,
 			criticalStep=math.inf,
