@@ -32,8 +32,8 @@ import table  # noqa: E402
 from hexmembrane.output import records  # noqa: E402
 
 FIRST_SEED = 7
-#: Processor minutes of a base run (AMD EPYC with 2 processors shared with other work, 26 November 2026, 0c227f6).
-MINUTES = 0.6
+#: Processor minutes of a base run (AMD EPYC with 2 processors shared with other work, 27 November 2026, 0c92da1).
+MINUTES = 0.15
 HEADER = ("run", "seed", "outcome", "packing", *(f"{name} [{unit}]" for name, (unit, _) in curves.QUANTITIES.items()), "steps", "time [s]", "x of the log", "message")
 
 

@@ -119,7 +119,7 @@ def _times(section, key, base):
 	"""Levels of a time constant, in d sqrt(rho/p); ``base``: what it is by default, None where that is no single time."""
 	middle = base or 10
 	levels = [Level(f"{f * middle:g}", f * middle, {} if f * middle == base else {section: {key: f * middle * TIME}}) for f in (0.5, 1, 2, 4)]
-	return levels if base else [*levels, Level("10 and 20")]
+	return levels if base else [*levels, Level("by default")]
 
 
 def _sizes():
@@ -160,6 +160,14 @@ def knobs():
 			"density scaling of a fine membrane", "factor on the membrane's mass at R/r = 0.4",
 			[Level("1", 1.0, fine, 3.5, run="size ratio 0.4"), Level("as needed", change=fine, cost=2)],
 			log=r"membrane's density times ([\d.]+)",
+		),
+		# R/r = 0.2 takes 28 times a base run unscaled, and a fifth of that with the masses it needs for the grains' step.
+		Knob(
+			"size ratio of a scaled membrane", "R/r",
+			[
+				Level("0.4", 0.4, fine, 2, run="density scaling of a fine membrane as needed"),
+				Level("0.2", 0.2, {"membrane": {"sizeRatio": 0.2, "densityScaling": None}}, 6, slow=True),
+			],
 		),
 		Knob("pressure loop", "membrane.pressureTime over d sqrt(rho/p)", _times("membrane", "pressureTime", 10), theory=1),
 		Knob("loop beside the platens", "membrane.servoTime over d sqrt(rho/p)", _times("membrane", "servoTime", 4), theory=1),
