@@ -57,7 +57,7 @@ def test_jobsInTheWall(part, tmp_path):
 
 def test_slowLevelsAreAsked(part, tmp_path):
 	names = [set(part("accuracy").Study(tmp_path, 2, slow=slow).jobs) for slow in (False, True)]
-	assert names[1] - names[0] == {f"{what}, seed {seed}" for what in ("size ratio 0.2", "grains 7000", "grains 30000") for seed in (7, 8)}
+	assert names[1] - names[0] == {f"{what}, seed {seed}" for what in ("size ratio 0.2", "size ratio of a scaled membrane 0.2", "grains 7000", "grains 30000") for seed in (7, 8)}
 
 
 def records(rows, last, q):
