@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Do known grains come back from one test of theirs? scripts/yade -x examples/toyoura/recovery.py CALIBRATION_FOLDER.
+"""Do known grains come back from tests of theirs? scripts/yade -x examples/toyoura/recovery.py CALIBRATION_FOLDER [--tests N].
 
-A trial takes one test (one packing) of one set as the laboratory's, with noise of reading on it. The other sets' tests are what a calibration has. Between
+A trial takes one test (one packing) of one set as the laboratory's, or the mean of N, with noise of reading on it. The other sets' tests are what a calibration has. Between
 them curves are a quadratic in the parameters, fitted without the trial's set; the posterior is over a quasi-random cloud in the prior's box. So curves are
 of DEM and the way between them is a surrogate: it needs no tests beside those of the calibration. A trial counts where its set is within the box that
 most sets are drawn in, since a quadratic is no extrapolation.
 """
 
+import argparse
 import json
 import pathlib
 import sys
@@ -37,21 +38,21 @@ def terms(points):
 	return numpy.column_stack([numpy.ones(len(points)), points, *pairs])
 
 
-def posterior(target, values, points, found, seeds, cloud):
-	"""Log likelihood on the cloud of laboratory ``values`` at a target; ``found``: (sets, strains) means over ``seeds`` packings at ``points``."""
+def posterior(target, values, points, found, seeds, cloud, tests):
+	"""Log likelihood on the cloud of laboratory ``values`` at a target, means of ``tests``; ``found``: (sets, strains) means over ``seeds`` packings at ``points``."""
 	matrix = terms(points)
 	fit, *_ = numpy.linalg.lstsq(matrix, found, rcond=None)
 	freedom = max(len(points) - matrix.shape[1], 1)
 	# of a packing: what the quadratic leaves of means over packings
-	scatter = numpy.sqrt(seeds * ((found - matrix @ fit) ** 2).sum(axis=0) / freedom + likelihood.READING[target.quantity] ** 2)
+	scatter = numpy.sqrt((seeds * ((found - matrix @ fit) ** 2).sum(axis=0) / freedom + likelihood.READING[target.quantity] ** 2) / tests)
 	covariance = numpy.outer(scatter, scatter) * numpy.exp(-abs(target.strain[:, None] - target.strain) / likelihood.LENGTH)
 	factor = numpy.linalg.cholesky(covariance + 1e-9 * numpy.diag(scatter**2)), True
 	apart = (terms(cloud) @ fit - values).T
 	return -0.5 * (apart * cho_solve(factor, apart)).sum(axis=0)
 
 
-def trials(folder, say):
-	"""Say a line a trial, and what came out; the list of (covered, relative errors) by parameter."""
+def trials(folder, tests, say):
+	"""Say what came out; the list of (covered, relative errors) by parameter, a trial each. ``tests``: so many are the laboratory's."""
 	calibration = calibrationfile.load(HERE / "calibration.yaml")
 	drawn = json.loads((pathlib.Path(folder) / GENERATIONS).read_text(encoding="utf-8"))["generations"]
 	sets = [(setName(g, k), numpy.array(point)) for g, points in enumerate(drawn) for k, point in enumerate(points)]
@@ -67,8 +68,8 @@ def trials(folder, say):
 		logs, others = numpy.zeros(CLOUD), numpy.arange(len(sets)) != k
 		for target in targets:
 			own = curves[target.key]
-			read = own[k, 0] + random.normal(size=len(target.strain)) * likelihood.READING[target.quantity]
-			logs += posterior(target, read, points[others], own[others].mean(axis=1), count, cloud)
+			read = own[k, :tests].mean(axis=0) + random.normal(size=len(target.strain)) * likelihood.READING[target.quantity] / tests**0.5
+			logs += posterior(target, read, points[others], own[others].mean(axis=1), count, cloud, tests)
 		weight = numpy.exp(logs - logs.max())
 		weight /= weight.sum()
 		row = {}
@@ -85,4 +86,8 @@ def trials(folder, say):
 
 
 if __name__ == "__main__":
-	trials(sys.argv[1], lambda text: print(text, flush=True))
+	parser = argparse.ArgumentParser(prog="recovery.py")
+	parser.add_argument("calibration", metavar="CALIBRATION_FOLDER", help="what scripts/calibrate has left")
+	parser.add_argument("--tests", type=int, default=1, metavar="N", help="the laboratory's, as many as the calibration has packings at most (1)")
+	given = parser.parse_args()
+	trials(given.calibration, given.tests, lambda text: print(text, flush=True))

@@ -79,7 +79,7 @@ def test_recovery(tmp_path, monkeypatch):
 		return {name: {"98 kPa": [made(*own, random) for _ in tests.calibration.seeds]} for (name, _), own in zip(sets, values)}, {name: [] for name, _ in sets}
 
 	monkeypatch.setattr(recovery.evaluate.Inside, "series", series)
-	rows = recovery.trials(tmp_path, lambda text: None)
+	rows = recovery.trials(tmp_path, 1, lambda text: None)
 	covered = [row[key][0] for row, key in itertools.product(rows, rows[0])]
 	assert len(rows) > 3 and numpy.mean(covered) > 0.85
 	assert numpy.median([abs(row["specimen.friction"][1]) for row in rows]) < 0.1
