@@ -6,6 +6,8 @@
 
 #include <map>
 
+#include <omp.h>
+
 using namespace hexmembrane;
 
 namespace {
@@ -199,6 +201,27 @@ TEST(GrainAssembly, equalsTheSlowReference)
 		else
 			EXPECT_GT(support::relativeDifference(without, slow.x), 1e-6) << "rolling resistance has not acted";
 	}
+}
+
+TEST(GrainAssembly, threadsTakeThePartsOfOneResult)
+{
+	// more grains than one thread takes; they overlap a little and slide
+	Random random(5);
+	SpherePackingSpec loose{0.05, 0.1, {}, 0.42, 1};
+	for (int i = 0; i < 2500; ++i) loose.radii.push_back(1e-3 * (1 + 0.8 * random.uniform()));
+	const SpherePacking start = packSpheres(loose);
+	std::vector<std::vector<Vec3>> found;
+	const int before = omp_get_max_threads();
+	for (const int threads : {1, 2, 3, 4}) {
+		omp_set_num_threads(threads);
+		GrainAssembly g(start.centres, start.radii, 1, 0.05, 0.1, {E, 2, 0.4, 0.5});
+		for (int i = 0; i < 40; ++i) g.step(1e-4);
+		EXPECT_GT(g.contacts(), 2500);
+		found.push_back(g.centres());
+	}
+	omp_set_num_threads(before);
+	for (const auto& centres : found)
+		for (std::size_t i = 0; i < centres.size(); ++i) ASSERT_EQ((centres[i] - found[0][i]).norm(), 0) << i;
 }
 
 TEST(GrainAssembly, forcesAmongGrainsAddUpToNothing)

@@ -312,7 +312,7 @@ void SphereAssembly::computeLoads(double dt, int threads)
 	// one slot a thread, summed in their order
 	std::vector<SweepSums> parts(threads);
 	std::vector<BoundaryLoad> received(count * threads);
-#pragma omp parallel num_threads(threads) if (threads > 1)
+#pragma omp parallel num_threads(team(threads)) if (team(threads) > 1)
 	{
 #pragma omp for schedule(static, 1)
 		for (int t = 0; t < threads; ++t) {
@@ -350,7 +350,7 @@ int SphereAssembly::moveGrains(double dt, double damping, bool energies, int thr
 {
 	divide(threads);
 	std::vector<GrainMotion> parts(threads); // summed in the order of the threads
-#pragma omp parallel for schedule(static, 1) num_threads(threads) if (threads > 1)
+#pragma omp parallel for schedule(static, 1) num_threads(team(threads)) if (team(threads) > 1)
 	for (int t = 0; t < threads; ++t) {
 		GrainMotion part{};
 		part.places = places.data();

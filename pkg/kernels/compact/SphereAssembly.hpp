@@ -7,6 +7,7 @@
 #include "kernels/compact/ThreadPartition.hpp"
 #include "kernels/contact/ContactMaterial.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -77,7 +78,10 @@ public:
 	const std::vector<int>& loadedParticles() const { return loaded; }
 
 	/// Loads of one step: those of `outside` (empty: none) and of all contacts.
+	/// By as many parts as `threads`, which sets the order of sums; takeWorkers() says how many threads take them.
 	void computeLoads(double dt, int threads);
+	/// Threads that take the parts of a step; 0: as many as there are parts. Results depend on the parts alone.
+	void takeWorkers(int count) { workers = count; }
 	/// Leapfrog with local damping, as YADE's NewtonIntegrator: v += dt a, a reduced by the damping where it drives the motion and raised where it
 	/// brakes it, x += dt v. Grains only.
 	/// \return id of a grain that moved half a skin or more, or is not finite, -1: none
@@ -144,6 +148,8 @@ private:
 	/// Lists from `listed` and `listedShapes`.
 	void buildLists(const std::vector<int>& newIndex);
 	void sortGrains(std::vector<int>& newIndex);
+	int workers = 0;
+	int team(int parts) const { return workers > 0 ? std::min(workers, parts) : parts; }
 	/// The division of the spheres among so many threads.
 	void divide(int threads);
 	void listLoaded();

@@ -9,12 +9,19 @@
 #include <cmath>
 #include <string>
 
+#include <omp.h>
+
 namespace hexmembrane {
 
 namespace {
 
 /// Reach of the neighbour list beyond contact, in largest radii.
 constexpr double skinRatio = 0.1;
+
+/// Parts of a step: always the same, so that a packing does not depend on the number of threads.
+constexpr int parts = 4;
+/// Grains from which on several threads take them: below it they would mostly wait for each other.
+constexpr std::size_t manyGrains = 2000;
 
 /// Of grains and of walls.
 std::vector<ContactMaterial> materials(const GrainLaw& law)
@@ -40,6 +47,7 @@ GrainAssembly::GrainAssembly(std::vector<Vec3> centres, std::vector<double> radi
 	}
 	for (const auto& shape : shapes()) spheres.boundaries.push_back({shape, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), 1});
 	spheres.setSpheres(grains, int(grains.size()));
+	spheres.takeWorkers(grains.size() < manyGrains ? 1 : std::min(parts, omp_get_max_threads()));
 	spheres.setMaterials(materials(law));
 	spheres.setSkin(skinRatio * *std::max_element(radii.begin(), radii.end()));
 }
@@ -78,9 +86,9 @@ void GrainAssembly::step(double growth)
 {
 	if (growth != 0) shrink(1 / (1 + growth));
 	if (!spheres.listsHold()) spheres.makeLists();
-	spheres.computeLoads(timeStep, 1);
+	spheres.computeLoads(timeStep, parts);
 	for (int b : {bottom, top, side}) pressed[b] = spheres.onBoundary[b].normalForce;
-	const int lost = spheres.moveGrains(timeStep, law.damping, false, 1);
+	const int lost = spheres.moveGrains(timeStep, law.damping, false, parts);
 	if (lost >= 0)
 		fail("modulus", law.modulus, "grain " + std::to_string(lost) + " flew off while the packing was made", "another seed, or a lower stress");
 	spheres.endStep();

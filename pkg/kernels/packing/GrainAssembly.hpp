@@ -19,7 +19,8 @@ struct GrainLaw {
 /// Frictional spheres inside a smooth vertical cylinder with two ends, which are compressed by growing all of them by one common factor: the compact tier's
 /// SphereAssembly, with platens and wall that close in while the grains keep their size. Seen from outside the cylinder keeps its size and the grains grow.
 /// Quasi-static only: masses are pi/2 times modulus and radius in a unit of time of 1, so that one time step suits all sizes, and nothing here has a
-/// meaning in seconds. Axis z, lower end on z = 0. One thread: same input, same bits on one kind of processor.
+/// meaning in seconds. Axis z, lower end on z = 0. Same input, same bits on one kind of processor, whatever the number
+/// of threads.
 class GrainAssembly {
 public:
 	/// Input is the caller's to check. Radii in m, at factor 1.
