@@ -75,7 +75,7 @@ COMMANDS = {
 	"scripts/yade -x examples/paper/study/tension.py": Run(more=("--strains", "0.002", "--radius", "3e-3"), says="0.33"),
 	"scripts/yade -x examples/toyoura/predict.py out/toyoura --out out/toyoura/predicted": Elsewhere(TESTS + "test_toyoura.py", "def test_predictions"),
 	"scripts/yade -x examples/toyoura/effects.py membrane out/toyoura --out out/toyoura/membrane --packings 16": Elsewhere(TESTS + "test_toyoura.py", "def test_membranesAreComparedByPairs"),
-	"scripts/yade -x examples/toyoura/effects.py grains out/toyoura --out out/toyoura/grains --slower 2 --grains 600 4000": Elsewhere(TESTS + "test_toyoura.py", "def test_scaledGrains"),
+	"scripts/yade -x examples/toyoura/effects.py grains out/toyoura --out out/toyoura/grains --slower 2": Elsewhere(TESTS + "test_toyoura.py", "def test_scaledGrains"),
 	"scripts/yade -x examples/toyoura/recovery.py out/toyoura": Elsewhere(TESTS + "test_toyoura.py", "def test_recovery"),
 	"scripts/yade -x examples/pfc/two_balls.py": Elsewhere(TESTS + "test_pfc_guide.py", "def test_twoBalls"),
 	"scripts/yade -x pkg/specimen/packing_study.py": Elsewhere(STUDIES, "def test_packingStudy"),
