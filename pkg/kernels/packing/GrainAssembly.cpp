@@ -18,10 +18,9 @@ namespace {
 /// Reach of the neighbour list beyond contact, in largest radii.
 constexpr double skinRatio = 0.1;
 
-/// Parts of a step: always the same, so that a packing does not depend on the number of threads.
-constexpr int parts = 4;
-/// Grains from which on several threads take them: below it they would mostly wait for each other.
-constexpr std::size_t manyGrains = 2000;
+/// Parts of a step. They go by the number of grains alone, so that a packing does not depend on the number of threads; few grains have one: threads
+/// would mostly wait for each other.
+int partsOf(std::size_t grains) { return grains < 2000 ? 1 : 4; }
 
 /// Of grains and of walls.
 std::vector<ContactMaterial> materials(const GrainLaw& law)
@@ -38,7 +37,7 @@ std::vector<ContactMaterial> materials(const GrainLaw& law)
 } // namespace
 
 GrainAssembly::GrainAssembly(std::vector<Vec3> centres, std::vector<double> radii, double factor, double radius, double height, const GrainLaw& grainLaw)
-    : law(grainLaw), size(factor), cylinderRadius(radius / factor), cylinderHeight(height / factor)
+    : parts(partsOf(centres.size())), law(grainLaw), size(factor), cylinderRadius(radius / factor), cylinderHeight(height / factor)
 {
 	std::vector<SphereAssembly::Sphere> grains;
 	for (std::size_t i = 0; i < centres.size(); ++i) {
@@ -47,7 +46,7 @@ GrainAssembly::GrainAssembly(std::vector<Vec3> centres, std::vector<double> radi
 	}
 	for (const auto& shape : shapes()) spheres.boundaries.push_back({shape, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), 1});
 	spheres.setSpheres(grains, int(grains.size()));
-	spheres.takeWorkers(grains.size() < manyGrains ? 1 : std::min(parts, omp_get_max_threads()));
+	spheres.takeWorkers(std::min(parts, omp_get_max_threads()));
 	spheres.setMaterials(materials(law));
 	spheres.setSkin(skinRatio * *std::max_element(radii.begin(), radii.end()));
 }

@@ -57,6 +57,7 @@ private:
 	void shrink(double share);
 
 	SphereAssembly spheres;
+	int parts; ///< of a step
 	GrainLaw law;
 	double size, cylinderRadius, cylinderHeight; ///< the cylinder as the grains see it, which keep their size
 	double pressed[3] = {0, 0, 0};               ///< normal forces (N) on the boundaries
