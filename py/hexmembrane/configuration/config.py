@@ -170,12 +170,7 @@ class Platens:
 	"""The two rigid end platens."""
 
 	radius: Optional[float] = key(
-		None,
-		"radius of the faces; none: the specimen's; larger: as laboratories have with lubricated ends, over which the specimen widens. The membrane is then held at the "
-		"specimen's radius as before and does not meet the platens",
-		"m",
-		low=0,
-		openLow=True,
+		None, "radius of the faces; none: the specimen's; larger, as with a laboratory's lubricated ends: the soil may widen over them, and the membrane, held as before, does not meet them", "m", low=0, openLow=True
 	)
 	thickness: Optional[float] = key(None, "thickness; none: the membrane's end rows plus twice the largest travel", "m", low=0, openLow=True)
 	friction: float = shared("friction", "coefficient of friction on the platens, no rolling friction; with grains the lesser of both acts", default=0.3, high=5)
