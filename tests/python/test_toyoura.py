@@ -10,7 +10,7 @@ import pathlib
 
 import numpy
 import pytest
-from hexmembrane.laboratory.curve import Series
+from hexmembrane.laboratory.curve import Series, read
 from scipy.stats import qmc
 
 FOLDER = pathlib.Path(__file__).parents[2] / "examples" / "toyoura"
@@ -79,10 +79,27 @@ def test_recovery(tmp_path, monkeypatch):
 		return {name: {"98 kPa": [made(*own, random) for _ in tests.calibration.seeds]} for (name, _), own in zip(sets, values)}, {name: [] for name, _ in sets}
 
 	monkeypatch.setattr(recovery.evaluate.Inside, "series", series)
-	rows = recovery.trials(tmp_path, 1, lambda text: None)
+	rows = recovery.trials(recovery.calibrationfile.load(recovery.TOYOURA), tmp_path, 1, lambda text: None)
 	covered = [row[key][0] for row, key in itertools.product(rows, rows[0])]
 	assert len(rows) > 3 and numpy.mean(covered) > 0.85
 	assert numpy.median([abs(row["specimen.friction"][1]) for row in rows]) < 0.1
+
+
+def test_ownCurves(tmp_path):
+	"""Known grains' curves are those of their test but for noise of reading, and a calibration reads them; too many tests or another curve are refused."""
+	calibration = recovery.calibrationfile.load(FOLDER.parent / "calibrate" / "tiny.yaml")
+	recovery.make(calibration, tmp_path, lambda text: None)
+	test = recovery.ofTest(recovery.inside.table(tmp_path, recovery.studyfile.Run("made", {}, recovery.PACKING, None)))
+	columns = {"strain": "axial strain [%]", "stress_ratio": "stress ratio [-]", "volumetric_strain": "volumetric strain [%]", "volumetric": "dilation"}
+	curve = read({"file": "made.csv", **columns}, tmp_path, 1e5)
+	for quantity, deviation in recovery.likelihood.READING.items():
+		series = curve.series[quantity]
+		apart = series.value - test[quantity].at(series.strain.clip(max=test[quantity].strain[-1]))  # strains are written in round numbers
+		assert 0.6 * deviation < apart.std() < 1.5 * deviation and abs(apart.mean()) < 0.6 * deviation
+	with pytest.raises(recovery.ConfigError, match="--tests = 2.*fewer than 2 of the 3 packings"):
+		recovery.trials(calibration, tmp_path, 2, None)
+	with pytest.raises(recovery.ConfigError, match="--curves = loose.*its curves are made"):
+		recovery.trials(calibration, tmp_path, 1, None, ["loose"])
 
 
 def test_membranesAreComparedByPairs():
