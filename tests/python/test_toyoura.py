@@ -98,7 +98,7 @@ def test_ownCurves(tmp_path):
 		assert 0.6 * deviation < apart.std() < 1.5 * deviation and abs(apart.mean()) < 0.6 * deviation
 	with pytest.raises(recovery.ConfigError, match="--tests = 2.*fewer than 2 of the 3 packings"):
 		recovery.trials(calibration, tmp_path, 2, None)
-	with pytest.raises(recovery.ConfigError, match="--curves = loose.*its curves are made"):
+	with pytest.raises(recovery.ConfigError, match="--curves = 'loose'.*its curves are made"):
 		recovery.trials(calibration, tmp_path, 1, None, ["loose"])
 
 
