@@ -108,7 +108,7 @@ TABLE = {
 	"shear.*": _ALWAYS[SHEAR],
 	"measure.*": _ALWAYS[SHEAR],
 	"lab.*": (),
-	"numerics.threads": (),
+	"numerics.threads": (At(CONSOLIDATION, lambda config: (config.numerics.threads or 1) > 1),),  # another order of sums
 	"numerics.verlet": (At(CONSOLIDATION, _reference),),
 	"numerics.skin": (At(CONSOLIDATION, _compact),),
 	"numerics.substeps": (At(CONSOLIDATION, _compact),),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""job.py STAGE: runs one stage of the plan in this folder, in a YADE of its own on one thread, and writes its result; Snakemake's rules call it.
+"""job.py STAGE: runs one stage of the plan in this folder, in a YADE of its own on as many threads as the plan says, and writes its result; Snakemake's rules call it.
 
 Whatever ends YADE, the stage is tried again from its last checkpoint, as often as the plan says; then its error is its result. A stage that is
 stopped (SIGTERM, SIGINT, a queue's SIGUSR1, the end of whoever has started it) has no result: the next call goes on from its last checkpoint.
@@ -100,9 +100,9 @@ class Job:
 		if not resume:
 			shutil.rmtree(self.test, ignore_errors=True)
 		parent, runner = os.getppid(), os.environ.get(RUNNER)
-		command = [sys.executable, str(LAUNCH), "1", str(MAIN), *self.arguments(resume)]
-		threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
-		environment = {**os.environ, **threads, "PYTHONPATH": str(MAIN.parent.parent)}
+		threads = str(self.job.get("threads", 1))
+		command = [sys.executable, str(LAUNCH), threads, str(MAIN), *self.arguments(resume)]
+		environment = {**os.environ, "OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(MAIN.parent.parent)}
 		said = self.folder / "log.txt"
 		again = said.exists()
 		with open(said, "ab") as log:

@@ -26,17 +26,27 @@ _PACKING, _PICTURE = 90, 150000
 
 
 def _settled(config):
-	"""The configuration with what ``accuracy`` chooses, and the radii of its grains; one thread, no laboratory, and pictures in VTK and pages only when they are asked for."""
+	"""The configuration with what ``accuracy`` chooses, and the radii of its grains; no laboratory, and pictures in VTK and pages only when they are asked for."""
 	radii = specimen.plannedRadii(config)
 	if config.accuracy is not None:
 		accuracy.choose(config, radii)
-	config.accuracy, config.numerics.threads = None, None
+	config.accuracy = None
 	config.lab = Lab()  # its file is no part of a study's folder
 	if "output.vtkEvery" not in config.given:
 		config.output.vtkEvery = 0
 	if "output.report" not in config.given:
 		config.output.report = False
 	return radii
+
+
+def _threads(config):
+	"""Threads of a test's steps: one, unless its configuration says more."""
+	return config.numerics.threads or 1
+
+
+def threadsOf(job):
+	"""Threads that a job of a plan takes; plans of older versions say none."""
+	return job.get("threads", 1)
 
 
 def _costs(config, radii):
@@ -49,7 +59,8 @@ def _costs(config, radii):
 	needs = estimate.Estimate.of(config, radii)
 	needs.require(config, estimate.Machine.here())
 	spheres = needs.grains + needs.membrane
-	one, kept = estimate.stepTime(config.tier, needs.grains, needs.membrane), spheres * (estimate.STATE + 2 * estimate.CHECKPOINT)
+	one = estimate.stepTime(config.tier, needs.grains, needs.membrane) * (1 + estimate.UNDIVIDED * (_threads(config) - 1))
+	kept = spheres * (estimate.STATE + 2 * estimate.CHECKPOINT)
 	rows = needs.consolidation / config.output.consolidationSteps, sum(stage.records for stage in lists.plan(config))
 	row = _ROW_TIME + (_CHECKPOINT_TIME / config.output.checkpointEvery if config.output.checkpointEvery else 0)
 	each = {
@@ -100,6 +111,8 @@ def make(study):
 					keys["specimen"].update(packing=f"{STAGES_FOLDER}/{stages[SPECIMEN]}/test/packing.txt", gradation=None)
 				jobs[name] = {"stage": stage, "before": before, "seconds": round(costs[stage][0], 2), "bytes": round(costs[stage][1]), "config": keys}
 				jobs[name]["stepping"] = round(costs[stage][2], 2)
+				jobs[name]["threads"] = 1 if stage == SPECIMEN else _threads(run.config)
+				keys["numerics"]["threads"] = None  # the job starts YADE with them
 				if stage == SHEAR:
 					jobs[name]["rows"] = list(lists.plan(run.config)[-1].chain)
 			before = name

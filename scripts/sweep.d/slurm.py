@@ -71,7 +71,7 @@ def submit(path):
 	stage.mkdir(parents=True, exist_ok=True)
 	batch = stage / "batch.sh"
 	batch.write_text(script(text), encoding="utf-8")
-	named = ["--job-name", stage.name, "--chdir", os.getcwd(), "--output", str(stage / "slurm.txt"), "--open-mode=append", "--ntasks=1", "--cpus-per-task=1", "--requeue"]
+	named = ["--job-name", stage.name, "--chdir", os.getcwd(), "--output", str(stage / "slurm.txt"), "--open-mode=append", "--ntasks=1", f"--cpus-per-task={properties['threads']}", "--requeue"]
 	code, said, wrong = onHost("sbatch", "--parsable", *named, *_asked(properties["resources"]), str(batch))
 	if code:
 		raise OSError(f"sbatch ended with the code {code}: {wrong}")

@@ -42,7 +42,7 @@ _LAST_WORDS = 30
 
 def addRunning(parser):
 	"""The options of how tests are run."""
-	parser.add_argument("--cores", type=int, default=len(os.sched_getaffinity(0)), metavar="N", help="tests at a time, one thread each (default: one a processor)")
+	parser.add_argument("--cores", type=int, default=len(os.sched_getaffinity(0)), metavar="N", help="threads of all tests that run at a time, one each unless numerics.threads says more (default: one a processor)")
 	parser.add_argument("--dry-run", action="store_true", help="check everything, say what it costs, run nothing")
 	parser.add_argument("--again", action="store_true", help="try failed stages again")
 	parser.add_argument("--slurm", action="store_true", help="jobs go to the queue of Slurm; --cores is then the number of jobs in it at a time")
@@ -85,7 +85,7 @@ def announce(plan, folder, cores, say):
 	stages = ", ".join(f"{sum(found['stage'] == stage for found in plan['jobs'].values())} {name}" for stage, name in zip(job.PRODUCTS, ("packings", "consolidated states", "tests sheared")))
 	say(f"{plan['title']}: {len(plan['runs'])} runs; {stages}")
 	hours = coreHours(left.values())
-	longest = max((coreHours([found]) for found in left.values()), default=0)
+	longest = max((coreHours([found]) / plans.threadsOf(found) for found in left.values()), default=0)
 	size, free = sum(found["bytes"] for found in left.values()), shutil.disk_usage(folder if folder.exists() else pathlib.Path.cwd()).free
 	say(f"to do: {len(left)} stages, about {hours:.2g} core hours, {clock(3600 * max(hours / cores, longest))} on {cores} cores, {_size(size)} on the disk of {_size(free)} free")
 	if size > free:
@@ -179,8 +179,11 @@ def _tell(table, folder, say):
 def advance(plan, inputs, folder, arguments, say):
 	"""Write a plan into its folder, whose lock the caller holds, and run what has not been run; nothing is gathered.
 
-	:raises ConfigError: jobs are to go to a queue that is not there.
+	:raises ConfigError: jobs are to go to a queue that is not there, or a test has more threads than there are cores for all.
 	"""
+	most = max((plans.threadsOf(found) for found in plan["jobs"].values()), default=1)
+	if most > arguments.cores and not arguments.slurm and not arguments.profile:
+		raise ConfigError("--cores", arguments.cores, f"is less than numerics.threads = {most} of a test", f"--cores {most} or more, or fewer threads; results depend on them by rounding")
 	if arguments.slurm and slurm.version() is None:
 		raise ConfigError("--slurm", "sbatch", "is not found or does not answer on this machine", "call it where jobs are submitted, such as a cluster's login node, or leave --slurm out")
 	plans.write(plan, inputs, folder)
@@ -235,7 +238,7 @@ def execute(plan, inputs, folder, arguments, say):
 
 
 def verify(arguments, say):
-	"""Run a part of an archived study again; 0: all equal, bit for bit or, on another processor, nearly."""
+	"""Run a part of an archived study again; 0: all equal, bit for bit or, on another processor or several threads, nearly."""
 	path = pathlib.Path(arguments.verify)
 	folder = pathlib.Path(arguments.out or pathlib.Path("out", "sweep", "verify"))
 	if (folder / plans.NAME).exists():
@@ -257,9 +260,9 @@ def verify(arguments, say):
 	for name, found in plan["jobs"].items():
 		worst, text = archive.compare(found, *(place / plans.STAGES_FOLDER / name for place in (old, folder)))
 		before = plans.result(old, name)["processor"]
-		other = before != job.processor()
+		other = before != job.processor() or plans.threadsOf(found) > 1  # neither has the same order of sums
 		equal &= worst == 0 or other and worst <= archive.TOLERANCE
-		say(f"{name}: {text}" + (f"; made on {before}, here is {job.processor()}" if other and worst != 0 else ""))
+		say(f"{name}: {text}" + (f"; made on {before}, here is {job.processor()}" if other and worst != 0 else "") + (f"; on {plans.threadsOf(found)} threads" if plans.threadsOf(found) > 1 else ""))
 	say("verified" if equal else "NOT verified: see above")
 	return 0 if equal else 1
 

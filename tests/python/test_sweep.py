@@ -86,7 +86,8 @@ def test_everyKeyIsInTheTable(base):
 		({"tier": "reference"}, CONSOLIDATION),
 		({"measure": {"slices": 5}}, SHEAR),
 		({"membrane": {"young": 2e6}}, None),
-		({"numerics": {"threads": 2, "verlet": 0.3}}, None),
+		({"numerics": {"threads": 2}}, CONSOLIDATION),
+		({"numerics": {"threads": 1, "verlet": 0.3}}, None),
 		({"title": "another", "output": {"vtkEvery": 3, "checkpointEvery": 5}}, None),
 	],
 )
@@ -307,6 +308,19 @@ def pidsOf(folder):
 		if b"--out" in words and any(word.startswith(os.fsencode(folder)) for word in words):
 			found.append(int(path.parent.name))
 	return found
+
+
+def test_testsOfSeveralThreads(tmp_path):
+	"""They share the packing, take as many of the cores, and are refused where there are fewer."""
+	path = write(tmp_path, axes={"numerics.threads": [1, 2]}, report=False)
+	code, said = call(path, "--out", tmp_path / "out", "--cores", 1)
+	assert code == 2 and "--cores = 1: is less than numerics.threads = 2 of a test; fix: --cores 2 or more" in said
+	code, said = call(path, "--out", tmp_path / "out", "--cores", 2)
+	assert code == 0 and len(list((tmp_path / "out/stages").glob("specimen-*"))) == 1, said
+	made = [yaml.safe_load(file.read_text())["made"]["threads"] for file in (tmp_path / "out/stages").glob("shear-*/test/config.yaml")]
+	assert sorted(made) == [1, 2]
+	jobs = plans.read(tmp_path / "out")["jobs"]
+	assert sorted((found["stage"], plans.threadsOf(found)) for found in jobs.values()) == [("consolidation", 1), ("consolidation", 2), ("shear", 1), ("shear", 2), ("specimen", 1)]
 
 
 def test_study(tmp_path, monkeypatch, capsys):

@@ -44,7 +44,7 @@ def queue(tmp_path, monkeypatch):
 
 
 def submit(folder, **resources):
-	properties = {"output": ["stages/shear-1/result.json"], "resources": {"mem_mb": 2000, "runtime": 30, **resources}}
+	properties = {"output": ["stages/shear-1/result.json"], "threads": 2, "resources": {"mem_mb": 2000, "runtime": 30, **resources}}
 	(folder / "job.sh").write_text(JOBSCRIPT.replace("{properties}", json.dumps(properties)))
 	return slurm.submit(folder / "job.sh")
 
@@ -54,7 +54,7 @@ def test_submit(queue, tmp_path):
 	queue("sbatch", "17;cluster\n")
 	assert submit(tmp_path, slurm_account="sand", slurm_extra="--qos=long '--comment=a b'") == "17"
 	given = queue.given("sbatch")
-	assert {"--parsable", "--requeue", "--mem=2000M", "--time=30", "--account=sand", "--qos=long", "--comment=a b"} <= set(given)
+	assert {"--parsable", "--requeue", "--mem=2000M", "--time=30", "--account=sand", "--qos=long", "--comment=a b", "--cpus-per-task=2"} <= set(given)
 	assert given[given.index("--job-name") + 1] == "shear-1" and slurm.given() == {"17": "shear-1"}
 	(tmp_path / "job.sh").unlink()
 	subprocess.run(["/bin/sh", given[-1]], check=True)

@@ -39,7 +39,7 @@ SETTINGS = ("centre", "cube", "open loop", "centre in an open loop", "equal spri
 #: Comparison -> (sets, what names a case, what a case and its reference share, values of the reference, its set).
 COMPARISONS = {
 	"boundary": (("boundary",), ("boundary",), ("consolidation.pressure",), {"boundary": "membrane"}, "boundary"),
-	"size": (("size", "finest"), ("membrane.particleRadius",), ("consolidation.pressure",), {"membrane.particleRadius": "0.0005"}, "size"),
+	"size": (("size", "finest"), ("membrane.particleRadius",), ("consolidation.pressure",), {"membrane.particleRadius": "0.00025"}, "finest"),
 	"porosity": (("porosity",), ("boundary",), ("specimen.porosity",), {"boundary": "membrane"}, "porosity"),
 	"densest": (("densest",), ("boundary",), (), {"boundary": "membrane"}, "densest"),
 	"settings": (SETTINGS, ("set",), (), OWN, "size"),

@@ -21,6 +21,8 @@ from hexmembrane.scene import timestep
 #: Time [s] of one step of the compact tier on one thread: of any, a grain's part, a membrane sphere's: README.md, Speed, and 65 us of a test of 200 grains. The reference
 #: tier's steps last so many times as long.
 STEP, GRAIN_STEP, MEMBRANE_STEP, REFERENCE = 25e-6, 8.2e-8, 4.2e-8, 29
+#: Share of a step that a thread more takes as well: 0.11 and 0.20 of it in the study's membranes of 0.25 and 0.5 mm (scripts/bench.d/README.md).
+UNDIVIDED = 0.15
 #: Memory [bytes]: of YADE, Python and the picture; of a sphere with its contacts. Measured with 3,416 and 15,328 spheres in both tiers: 300 MB, 4 kB, and 80 MB for the picture.
 PROGRAM, SPHERE = 400e6, 6e3
 #: Disk [bytes] a sphere: a kept state, a last checkpoint, a VTK frame; bytes of a row. Measured with 3,416 spheres.
