@@ -44,7 +44,7 @@ void SoilStressServo::step(StepView& view)
 	constexpr Real telling = 0.5;
 	const Real share = arrived();
 	if (share >= telling || math::isnan(lastCorrection))
-		loop().close(*scene, share >= telling ? share * stress : stress, [&] {
+		loop().close(*scene, share * stress, [&] {
 			const Matrix3r middle = measure->measure(*scene, view).middle;
 			return drive ? middle(2, 2) : 0.5 * (middle(0, 0) + middle(1, 1));
 		});

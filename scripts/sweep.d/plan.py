@@ -18,9 +18,11 @@ from hexmembrane.scene import accuracy, specimen
 FORMAT = 1
 NAME, STAGES_FOLDER, INPUTS, RESULT = "plan.json", "stages", "inputs", "result.json"
 #: Processor time [s] of a stage's start, and of the start of scripts/sweep itself, both on the machine that these and estimate.STEP are of.
-_START, SWEEP_START = 4.0, 3.5
+_START, SWEEP_START = 1.0, 1.05
+#: Time [s] of a sphere in a stage's scene: it is made or read, the critical step sought, the state written.
+_SPHERE_TIME = 1.5e-4
 #: Time [s] of a grain that is packed, of a picture, of a row, of a checkpoint, of a search for bands among 1,200 grains, and of a replicate of one there.
-_PACKING_TIME, _PICTURE_TIME, _ROW_TIME, _CHECKPOINT_TIME, _BANDS_TIME, _REPLICATE_TIME = 2e-3, 1.0, 3e-3, 0.02, 0.25, 0.01
+_PACKING_TIME, _PICTURE_TIME, _ROW_TIME, _CHECKPOINT_TIME, _BANDS_TIME, _REPLICATE_TIME = 2e-3, 0.5, 3e-3, 0.02, 0.25, 0.01
 #: Bytes of a grain that is packed, of a picture.
 _PACKING, _PICTURE = 90, 150000
 
@@ -59,19 +61,20 @@ def _costs(config, radii):
 	needs = estimate.Estimate.of(config, radii)
 	needs.require(config, estimate.Machine.here())
 	spheres = needs.grains + needs.membrane
-	one = estimate.stepTime(config.tier, needs.grains, needs.membrane) * (1 + estimate.UNDIVIDED * (_threads(config) - 1))
+	one = needs.seconds / (needs.consolidation + needs.shear) * (1 + estimate.UNDIVIDED * (_threads(config) - 1))
+	start = _START + _SPHERE_TIME * spheres
 	kept = spheres * (estimate.STATE + 2 * estimate.CHECKPOINT)
 	rows = needs.consolidation / config.output.consolidationSteps, sum(stage.records for stage in lists.plan(config))
 	row = _ROW_TIME + (_CHECKPOINT_TIME / config.output.checkpointEvery if config.output.checkpointEvery else 0)
 	each = {
 		SPECIMEN: (_START + _PACKING_TIME * len(radii), _PACKING * len(radii), 0.0),
-		CONSOLIDATION: (_START + one * needs.consolidation + row * rows[0], kept + estimate.ROW * rows[0], one * needs.consolidation),
-		SHEAR: (_START + one * needs.shear + row * rows[1] + _PICTURE_TIME + _bandsTime(config, needs.grains), kept + estimate.ROW * rows[1] + _PICTURE, one * needs.shear),
+		CONSOLIDATION: (start + one * needs.consolidation + row * rows[0], kept + estimate.ROW * rows[0], one * needs.consolidation),
+		SHEAR: (start + one * needs.shear + row * rows[1] + _PICTURE_TIME + _bandsTime(config, needs.grains), kept + estimate.ROW * rows[1] + _PICTURE, one * needs.shear),
 	}
 	made = {}
 	for stage, parts in foldersOf(config).items():
 		time, size, steps = (sum(each[part][k] for part in parts) for k in range(3))
-		made[stage] = time - _START * (len(parts) - 1), size, steps  # a list of stages starts once
+		made[stage] = time - start * (len(parts) - 1), size, steps  # a list of stages starts once
 	return made
 
 

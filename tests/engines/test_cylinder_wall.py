@@ -84,6 +84,20 @@ def test_servoHoldsTheStressForAnyStiffness(O, tier, stiffness):
 	assert servo.work > 0
 
 
+def test_theDashpotLetsAFlowPassOnceTheWallHasStopped(O, tier):
+	"""A wall that overshoots closes above its target: there the whole dashpot still brakes it, and the flow begins when it has stopped."""
+	target = 4e3
+	scene(tier, 1e5, stress=target, height=HEIGHT, maxVelocity=0.5)
+	servo, velocity, stopped, above = find(RadialWallServo), math.inf, False, 0
+	for _ in range(400):
+		run(1)
+		stopped |= servo.radialStress >= target and velocity <= 0
+		above += servo.radialStress >= target and not stopped
+		velocity = servo.velocity
+		assert (servo.flow != 0) == stopped
+	assert above > 1 and stopped
+
+
 def test_saveAndLoadContinueExactly(O, tier, tmp_path):
 	wall, _ = scene(tier, 1e5, stress=2e3, height=HEIGHT, maxVelocity=0.02)
 

@@ -54,6 +54,7 @@ def test_moreWork(tiny):
 	fine = Estimate.of(*tiny(membrane={"sizeRatio": 0.5}))
 	assert 3 < fine.membrane / base.membrane < 5 and fine.step < base.step
 	assert Estimate.of(*tiny(tier="reference")).seconds > 20 * base.seconds
+	assert Estimate.of(*tiny(membrane={"poisson": 0.2})).seconds > 1.5 * base.seconds
 	wall = Estimate.of(*tiny(boundary="wall"))
 	assert wall.membrane == 0 and wall.memory < base.memory and wall.disk < base.disk
 	assert Estimate.of(*tiny(numerics={"dt": 1e-6})).step == 1e-6

@@ -18,9 +18,9 @@ from hexmembrane.configuration.stages import CONSOLIDATION, MEMBRANE, boundaries
 from hexmembrane.run.progress import clock
 from hexmembrane.scene import timestep
 
-#: Time [s] of one step of the compact tier on one thread: of any, a grain's part, a membrane sphere's: README.md, Speed, and 65 us of a test of 200 grains. The reference
-#: tier's steps last so many times as long.
-STEP, GRAIN_STEP, MEMBRANE_STEP, REFERENCE = 25e-6, 8.2e-8, 4.2e-8, 29
+#: Time [s] of one step of the compact tier on one thread: of any, a grain's part, a membrane sphere's: README.md, Speed, and 65 us of a test of 200 grains; more of
+#: a membrane sphere whose bonds have shear springs (scripts/bench.d/README.md). The reference tier's steps last so many times as long.
+STEP, GRAIN_STEP, MEMBRANE_STEP, SHEAR_SPRINGS, REFERENCE = 25e-6, 8.2e-8, 4.2e-8, 1.1e-7, 29
 #: Share of a step that a thread more takes as well: 0.11 and 0.20 of it in the study's membranes of 0.25 and 0.5 mm (scripts/bench.d/README.md).
 UNDIVIDED = 0.15
 #: Memory [bytes]: of YADE, Python and the picture; of a sphere with its contacts. Measured with 3,416 and 15,328 spheres in both tiers: 300 MB, 4 kB, and 80 MB for the picture.
@@ -127,7 +127,7 @@ class Estimate:
 			rise=rise,
 			consolidation=consolidation,
 			shear=sheared,
-			seconds=(consolidation + sheared) * stepTime(config.tier, len(radii), particles),
+			seconds=(consolidation + sheared) * _stepTime(config, len(radii), particles),
 			memory=PROGRAM + SPHERE * spheres,
 			disk=spheres * (3 * STATE + 3 * CHECKPOINT + frame * frames) + ROW * rows + (PAGE + pageFrame * spheres * frames) * config.output.report,
 		)
@@ -168,9 +168,10 @@ class Estimate:
 			)  # fmt: skip
 
 
-def stepTime(tier, grains, membrane):
+def _stepTime(config, grains, membrane):
 	"""Time [s] of a step on one thread. :param grains, membrane: numbers of spheres."""
-	return (STEP + GRAIN_STEP * grains + MEMBRANE_STEP * membrane) * (REFERENCE if tier == "reference" else 1)
+	bonded = MEMBRANE_STEP + (0 if config.membrane.centralBonds else SHEAR_SPRINGS)
+	return (STEP + GRAIN_STEP * grains + bonded * membrane) * (REFERENCE if config.tier == "reference" else 1)
 
 
 def requireThreads(config, machine=None):
