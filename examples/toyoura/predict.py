@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Laboratory tests that grains were not calibrated on, predicted: scripts/yade -x examples/toyoura/predict.py CALIBRATION_FOLDER --out FOLDER [--tables].
+"""Laboratory tests that grains were not calibrated on, predicted: scripts/yade -x examples/toyoura/predict.py CALIBRATION_FOLDER --out FOLDER [--calibration FILE] [--tables].
 
 Each draw from the posterior in ``sets.csv`` is one set of parameters and one packing of its own, so an interval has both scatters in it. The draws are the
 same at all conditions. A void ratio of the laboratory goes to the packing's by its relative density: from the calibrated density on, with the slope between
@@ -193,12 +193,13 @@ def main(argv):
 	parser = argparse.ArgumentParser(prog="predict.py")
 	parser.add_argument("calibration", metavar="CALIBRATION_FOLDER", help="what scripts/calibrate has left")
 	parser.add_argument("--out", required=True, metavar="FOLDER")
+	parser.add_argument("--calibration", dest="file", metavar="FILE", default=HERE / "calibration.yaml", help="the calibration of that folder (default: calibration.yaml)")
 	parser.add_argument("--draws", type=int, default=6, metavar="N", help="tests a condition (6)")
 	parser.add_argument("--tables", action="store_true", help="run nothing")
 	given = parser.parse_args(argv)
 
 	def whole(say):
-		base = calibrationfile.load(HERE / "calibration.yaml").tests["98 kPa"].config
+		base = calibrationfile.load(given.file).tests["98 kPa"].config
 		wanted, folder = study(base, given.calibration, given.draws), pathlib.Path(given.out)
 		folder.mkdir(parents=True, exist_ok=True)
 		if not given.tables:
