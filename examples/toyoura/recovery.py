@@ -81,7 +81,7 @@ def trials(calibration, folder, tests, say, curves=None):
 	series, failed = evaluate.Inside(calibration, folder, None, say).series(sets)
 	used = {name: test for name, test in calibration.tests.items() if curves is None or name in curves}
 	sets = [one for one in sets if not failed[one[0]] and all(len(series[one[0]].get(name, ())) == count for name in used)]
-	targets = likelihood.targets({name: test.curve for name, test in used.items()}, {name: test.config.shear.strain for name, test in used.items()})
+	targets = likelihood.targets({name: test.curve for name, test in used.items()}, {name: test.end for name, test in used.items()})
 	points = numpy.array([point for _, point in sets])
 	curves = {t.key: numpy.array([[one[t.quantity].at(t.strain) for one in series[label][t.curve]] for label, _ in sets]) for t in targets}
 	cloud = qmc.Sobol(points.shape[1], seed=1).random(CLOUD)

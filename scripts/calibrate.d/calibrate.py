@@ -42,7 +42,7 @@ class Search:
 		self.calibration, self.tests, self._say = calibration, tests, say
 		self.path = pathlib.Path(folder) / GENERATIONS
 		self.drawn = self._read()
-		self.targets = likelihood.targets({name: test.curve for name, test in calibration.tests.items()}, {name: test.config.shear.strain for name, test in calibration.tests.items()})
+		self.targets = likelihood.targets({name: test.curve for name, test in calibration.tests.items()}, {name: test.end for name, test in calibration.tests.items()})
 
 	def _stamp(self):
 		"""What the drawn sets depend on."""
@@ -77,7 +77,7 @@ class Search:
 		series, failed = self.tests.series(sets)
 		found = likelihood.Evaluations(self.targets, self.calibration.model)
 		for name, _ in sets:
-			found.add(series[name])
+			failed[name] += found.add(series[name])
 		if not any(numpy.isfinite(found.logLikelihood())):
 			first = next((text for texts in failed.values() for text in texts), "no test reaches the curves' strains")
 			raise RuntimeError(f"calibration: no set of parameters has tests that are done; the first: {first}; fix: see {self.tests.folder}, narrow the ranges")

@@ -61,6 +61,11 @@ class Laboratory:
 	curve: laboratory.Curve
 	config: object
 
+	@property
+	def end(self):
+		"""Strain that all rows of a test cover: the last comes within a step of ``shear.strain``, before or after, so that is less a row."""
+		return self.config.shear.strain * (1 - 1 / self.config.output.records)
+
 
 @dataclasses.dataclass
 class Calibration:

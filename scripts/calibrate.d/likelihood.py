@@ -71,16 +71,19 @@ class Evaluations:
 		self._sets = []  # of each set {target's key: (seeds, points)}, None where no seed was done
 
 	def add(self, series):
-		"""``series``: {curve: [series of one seed, as :func:`hexmembrane.laboratory.misfit.ofTest` gives it]}; seeds that failed left out."""
-		rows = {}
+		"""``series``: {curve: [series of one seed, as :func:`hexmembrane.laboratory.misfit.ofTest` gives it]}; seeds that failed left out.
+
+		:returns: a text for each curve that some of these tests do not reach the end of: they are left out.
+		"""
+		rows, short = {}, []
 		for target in self.targets:
 			values = [one[target.quantity].at(target.strain) for one in series.get(target.curve, [])]
-			values = [row for row in values if numpy.isfinite(row).all()]
-			if not values:
-				self._sets.append(None)
-				return
-			rows[target.key] = numpy.array(values)
-		self._sets.append(rows)
+			whole = [row for row in values if numpy.isfinite(row).all()]
+			if len(whole) < len(values):
+				short.append(f"{target.curve}: {len(values) - len(whole)} of {len(values)} tests end before {target.strain[-1]:.4g}, and do not count")
+			rows[target.key] = numpy.array(whole)
+		self._sets.append(rows if all(map(len, rows.values())) else None)
+		return list(dict.fromkeys(short))
 
 	def __len__(self):
 		return len(self._sets)

@@ -212,10 +212,11 @@ def test_likelihood():
 	def test(offset):
 		return {"stress_ratio": Series(STRAIN, 1 + 20 * STRAIN + offset)}
 
-	found.add({"c": [test(0.1), test(-0.1)]})
+	assert found.add({"c": [test(0.1), test(-0.1)]}) == []
 	found.add({"c": [test(0.4), test(0.2)]})
 	found.add({"c": []})
-	found.add({"c": [{"stress_ratio": Series(STRAIN[:10], STRAIN[:10])}]})  # ends before the curve does
+	short = found.add({"c": [{"stress_ratio": Series(STRAIN[:10], STRAIN[:10])}]})
+	assert short == ["c: 1 of 1 tests end before 0.1, and do not count"]
 	assert found.packing(target) == pytest.approx(numpy.full(likelihood.POINTS, numpy.sqrt(0.02)))
 	logs = found.logLikelihood()
 	variance = 0.02 * 1.5 + likelihood.READING["stress_ratio"] ** 2
