@@ -21,6 +21,9 @@ from hexmembrane.scene import timestep
 #: Time [s] of one step of the compact tier on one thread: of any, a grain's part, a membrane sphere's: README.md, Speed, and 65 us of a test of 200 grains; more of
 #: a membrane sphere whose bonds have shear springs (scripts/bench.d/README.md). The reference tier's steps last so many times as long.
 STEP, GRAIN_STEP, MEMBRANE_STEP, SHEAR_SPRINGS, REFERENCE = 25e-6, 8.2e-8, 4.2e-8, 1.1e-7, 29
+#: More grains than CACHED leave the processor's cache: a grain's part grows by GROWTH for each factor e. A step took 4.4 ms with 30,000 grains and 17,000 membrane spheres,
+#: 18.2 ms with 100,000 and 67,000 (AMD EPYC, 32 MB of shared cache, nothing else running, 27 November 2026).
+CACHED, GROWTH = 7000, 0.32
 #: Share of a step that a thread more takes as well: 0.11 and 0.20 of it in the study's membranes of 0.25 and 0.5 mm (scripts/bench.d/README.md).
 UNDIVIDED = 0.15
 #: Memory [bytes]: of YADE, Python and the picture; of a sphere with its contacts. Measured with 3,416 and 15,328 spheres in both tiers: 300 MB, 4 kB, and 80 MB for the picture.
@@ -171,7 +174,8 @@ class Estimate:
 def _stepTime(config, grains, membrane):
 	"""Time [s] of a step on one thread. :param grains, membrane: numbers of spheres."""
 	bonded = MEMBRANE_STEP + (0 if config.membrane.centralBonds else SHEAR_SPRINGS)
-	return (STEP + GRAIN_STEP * grains + bonded * membrane) * (REFERENCE if config.tier == "reference" else 1)
+	far = 1 + GROWTH * math.log(max(grains / CACHED, 1))
+	return (STEP + GRAIN_STEP * far * grains + bonded * membrane) * (REFERENCE if config.tier == "reference" else 1)
 
 
 def requireThreads(config, machine=None):
