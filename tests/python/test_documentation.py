@@ -5,6 +5,7 @@ import pathlib
 
 import pytest
 import yade
+from exampleFiles import configurations
 from hexmembrane import configuration
 from hexmembrane.configuration import Config
 from hexmembrane.configuration.schema import markdown
@@ -60,7 +61,7 @@ def test_tableOfModules():
 	assert missing == []
 
 
-@pytest.mark.parametrize("path", sorted(path for path in (ROOT / "examples").rglob("*.yaml") if path.parent.name not in ("sweep", "calibrate", "study") and path.stem != "calibration"), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", configurations(), ids=lambda path: path.stem)
 def test_examplesAreSound(path):
 	"""Every example's configuration passes all checks, is listed in the README, and its grains can be drawn."""
 	config = configuration.load(path)

@@ -5,6 +5,7 @@ import json
 import pathlib
 
 import pytest
+from exampleFiles import configurations
 from hexmembrane.configuration.config import Config
 from hexmembrane.configuration.files import resolved
 from hexmembrane.configuration.json_schema import jsonSchema
@@ -26,7 +27,7 @@ def test_schemaIsSound(runHere):
 	jsonschema.Draft202012Validator.check_schema(json.loads(said))
 
 
-@pytest.mark.parametrize("path", sorted(path for path in (ROOT / "examples").rglob("*.yaml") if path.parent.name not in ("sweep", "calibrate", "study") and path.stem not in ("calibration", "calibration-1200", "recovery")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", configurations(), ids=lambda path: path.stem)
 def test_examplesAreValid(path):
 	assert faults(read(path)) == []
 
