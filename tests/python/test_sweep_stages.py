@@ -77,15 +77,17 @@ def test_fullDisk(plan, tmp_path, monkeypatch, capsys):
 	assert code == 1 and said.count("missing: specimen has not ended") == 4 and "No space left on device: 'records.h5'); fix: make room" in said
 
 
-def test_times(plan, tmp_path):
+def test_times(plan, tmp_path, monkeypatch):
 	"""A list starts once; bands, rows and the reference tier's steps cost more."""
 	def seconds(**changes):
 		config = derived(Config.of(BASE, tmp_path), changes)
 		return plans._costs(config, results.numpy.full(60, 3e-3))
 
-	base = seconds()
-	once = seconds(stages=None)
-	assert base["shear"][0] < once["consolidation"][0] + once["shear"][0] - 0.9 * plans._START
+	base, apart = seconds(), seconds(stages=None)
+	with monkeypatch.context() as longer:
+		longer.setattr(plans, "_START", plans._START + 10)
+		assert seconds()["shear"][0] == pytest.approx(base["shear"][0] + 10)
+		assert [seconds(stages=None)[stage][0] for stage in apart] == pytest.approx([one[0] + 10 for one in apart.values()])
 	assert seconds(measure={"bands": True})["shear"][0] > base["shear"][0] + 0.2
 	assert seconds(output={"records": 1000})["shear"][0] > base["shear"][0] + 2
 	assert seconds(tier="reference")["shear"][0] > base["shear"][0] + 2
