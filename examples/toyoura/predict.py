@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Laboratory tests that grains were not calibrated on, predicted: scripts/yade -x examples/toyoura/predict.py CALIBRATION_FOLDER --out FOLDER [--calibration FILE] [--tables].
+"""Laboratory tests that grains were not calibrated on, predicted: scripts/yade -x examples/toyoura/predict.py CALIBRATION_FOLDER --out FOLDER [--calibration FILE] [--hertz] [--tables].
 
 Each draw from the posterior in ``sets.csv`` is one set of parameters and one packing of its own, so an interval has both scatters in it. The draws are the
 same at all conditions. A void ratio of the laboratory goes to the packing's by its relative density: from the calibrated density on, with the slope between
 the void ratios that are the least and the largest of both sands. The velocity goes with the root of the pressure, so the inertial number is one.
+--hertz: the grains' stiffness goes with the cube root of the pressure, as that of Hertzian contacts does; else it is one for all tests.
 
 A second call goes on. --tables runs nothing: it writes tables and figure of the tests that are done, of a run that goes on too.
 """
@@ -39,6 +40,8 @@ VOID, LATEX = 0.70, 3e-4
 #: Strain over which a peak is a mean: a maximum of a curve of few grains is its noise.
 SMOOTH = 0.01
 STRAINS = 0.05, 0.10
+#: Power of the pressure that the stiffness of Hertzian contacts goes with.
+HERTZ = 1 / 3
 FIRST_SEED = 101
 
 
@@ -87,14 +90,18 @@ def packed(porosity, void):
 	return ratio / (1 + ratio)
 
 
-def study(base, folder, count):
-	"""The tests: all conditions of a draw, then the next draw, so that what is cut off has as many of each."""
+def study(base, folder, count, exponent=0.0):
+	"""The tests: all conditions of a draw, then the next draw, so that what is cut off has as many of each.
+
+	:param exponent: emod goes with this power of the pressure, from that of the calibration on.
+	"""
 	runs = []
 	for k, values in enumerate(draws(folder, count)):
 		for number, test in conditions().items():
 			own = {**values, "specimen.porosity": packed(values["specimen.porosity"], test["void ratio"]), studyfile.SEED: FIRST_SEED + k}
 			own |= {"consolidation.pressure": test["pressure"], "membrane.thickness": test["thickness"]}
 			own |= {"shear.velocity": base.shear.velocity * math.sqrt(test["pressure"] / PRESSURE)}
+			own |= {"specimen.emod": base.specimen.emod * (test["pressure"] / PRESSURE) ** exponent}
 			runs.append(studyfile.Run(f"{number}-{k}", {"test": number}, FIRST_SEED + k, derived(base, studyfile.nested(own))))
 	return studyfile.Study("predictions", ["test"], runs, 2, {})
 
@@ -195,12 +202,13 @@ def main(argv):
 	parser.add_argument("--out", required=True, metavar="FOLDER")
 	parser.add_argument("--calibration", dest="file", metavar="FILE", default=HERE / "calibration.yaml", help="the calibration of that folder (default: calibration.yaml)")
 	parser.add_argument("--draws", type=int, default=6, metavar="N", help="tests a condition (6)")
+	parser.add_argument("--hertz", action="store_true", help="stiffness of the grains goes with the cube root of the pressure")
 	parser.add_argument("--tables", action="store_true", help="run nothing")
 	given = parser.parse_args(argv)
 
 	def whole(say):
 		base = calibrationfile.load(given.file).tests["98 kPa"].config
-		wanted, folder = study(base, given.calibration, given.draws), pathlib.Path(given.out)
+		wanted, folder = study(base, given.calibration, given.draws, HERTZ if given.hertz else 0.0), pathlib.Path(given.out)
 		folder.mkdir(parents=True, exist_ok=True)
 		if not given.tables:
 			with sweep.lock(folder):

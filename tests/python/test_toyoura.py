@@ -56,7 +56,9 @@ def test_predictions(tmp_path, monkeypatch):
 	study = predict.study(config, tmp_path, 2)
 	assert len(study.runs) == 2 * len(predict.conditions()) and len({run.name for run in study.runs}) == len(study.runs)
 	rates = {run.config.shear.velocity / math.sqrt(run.config.consolidation.pressure) for run in study.runs}
-	assert max(rates) == pytest.approx(min(rates))
+	assert max(rates) == pytest.approx(min(rates)) and {run.config.specimen.emod for run in study.runs} == {config.specimen.emod}
+	hertz = predict.study(config, tmp_path, 1, predict.HERTZ).runs
+	assert [run.config.specimen.emod / 1e8 for run in hertz if run.values["test"] in (53, 66)] == pytest.approx([2 ** (1 / 3), 1])
 	random = numpy.random.default_rng(1)
 	wanted = [*predict.TESTS[:4], "e0.70-101"]
 	found = {number: [made(0.6, 0.4, 0.44, random) for _ in range(3)] for number in wanted}
