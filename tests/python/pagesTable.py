@@ -77,6 +77,8 @@ COMMANDS = {
 	"scripts/yade -x examples/toyoura/effects.py membrane out/toyoura --out out/toyoura/membrane --packings 16": Elsewhere(TESTS + "test_toyoura.py", "def test_membranesAreComparedByPairs"),
 	"scripts/yade -x examples/toyoura/effects.py grains out/toyoura --out out/toyoura/grains --slower 2": Elsewhere(TESTS + "test_toyoura.py", "def test_scaledGrains"),
 	"scripts/yade -x examples/toyoura/recovery.py out/toyoura": Elsewhere(TESTS + "test_toyoura.py", "def test_recovery"),
+	"scripts/yade -x examples/toyoura/recovery.py out/own --make": Elsewhere(TESTS + "test_toyoura.py", "def test_ownCurves"),
+	"scripts/yade -x examples/toyoura/recovery.py out/recovery --calibration examples/toyoura/recovery.yaml": Elsewhere(TESTS + "test_toyoura.py", "def test_recovery"),
 	"scripts/yade -x examples/pfc/two_balls.py": Elsewhere(TESTS + "test_pfc_guide.py", "def test_twoBalls"),
 	"scripts/yade -x pkg/specimen/packing_study.py": Elsewhere(STUDIES, "def test_packingStudy"),
 	"scripts/yade -x tests/python/syntheticBands.py 100": Elsewhere(TESTS + "test_bands.py", "syntheticBands"),
@@ -99,6 +101,7 @@ COMMANDS = {
 	"scripts/calibrate examples/calibrate/tiny.yaml": PLANNED,
 	"scripts/calibrate examples/calibrate/tiny.yaml --dry-run": Run(says="core hours"),
 	"scripts/calibrate examples/toyoura/calibration.yaml --inside --out out/toyoura": PLANNED,
+	"scripts/calibrate examples/toyoura/recovery.yaml --inside --out out/recovery": PLANNED,
 	"scripts/yade-batch -j 2 --job-threads 1 --log out/batch/@.log examples/sweep/batch/table.txt examples/sweep/batch/triaxial.py": Run(
 		instead="scripts/yade-batch -j 2 --job-threads 1 --dry-run --log out/@.log examples/sweep/batch/table.txt examples/sweep/batch/triaxial.py", outside=True, says="triaxial.py"
 	),
