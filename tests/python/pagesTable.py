@@ -74,6 +74,9 @@ COMMANDS = {
 	"scripts/yade -x examples/paper/study/compare.py out/study out/compare": Elsewhere(STUDIES, "def test_comparisonsOfTheStudy"),
 	"scripts/yade -x examples/paper/study/tension.py": Run(more=("--strains", "0.002", "--radius", "3e-3"), says="0.33"),
 	"scripts/yade -x examples/toyoura/predict.py out/toyoura --out out/toyoura/predicted": Elsewhere(TESTS + "test_toyoura.py", "def test_predictions"),
+	"scripts/yade -x examples/toyoura/predict.py out/toyoura-1200 --calibration examples/toyoura/calibration-1200.yaml --out out/toyoura-1200/predicted": Elsewhere(
+		TESTS + "test_toyoura.py", "def test_predictions"
+	),
 	"scripts/yade -x examples/toyoura/effects.py membrane out/toyoura --out out/toyoura/membrane --packings 16": Elsewhere(TESTS + "test_toyoura.py", "def test_membranesAreComparedByPairs"),
 	"scripts/yade -x examples/toyoura/effects.py grains out/toyoura --out out/toyoura/grains --slower 2": Elsewhere(TESTS + "test_toyoura.py", "def test_scaledGrains"),
 	"scripts/yade -x examples/toyoura/recovery.py out/toyoura": Elsewhere(TESTS + "test_toyoura.py", "def test_recovery"),
@@ -101,6 +104,7 @@ COMMANDS = {
 	"scripts/calibrate examples/calibrate/tiny.yaml": PLANNED,
 	"scripts/calibrate examples/calibrate/tiny.yaml --dry-run": Run(says="core hours"),
 	"scripts/calibrate examples/toyoura/calibration.yaml --inside --out out/toyoura": PLANNED,
+	"scripts/calibrate examples/toyoura/calibration-1200.yaml --inside --out out/toyoura-1200": PLANNED,
 	"scripts/calibrate examples/toyoura/recovery.yaml --inside --out out/recovery": PLANNED,
 	"scripts/yade-batch -j 2 --job-threads 1 --log out/batch/@.log examples/sweep/batch/table.txt examples/sweep/batch/triaxial.py": Run(
 		instead="scripts/yade-batch -j 2 --job-threads 1 --dry-run --log out/@.log examples/sweep/batch/table.txt examples/sweep/batch/triaxial.py", outside=True, says="triaxial.py"
