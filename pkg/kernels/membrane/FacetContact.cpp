@@ -259,11 +259,16 @@ void FacetContact::makeLists(const SphereRows& rows)
 	}
 	CellGrid grid(low, high, size + largest + h + skin);
 	grid.fill(listedGrains);
-	for (const int t : mayAct)
-		grid.forEachNear((at(triangles[t][0]) + at(triangles[t][1]) + at(triangles[t][2])) / 3, [&](int i) {
+	for (const int t : mayAct) {
+		const Vec3 middle = (at(triangles[t][0]) + at(triangles[t][1]) + at(triangles[t][2])) / 3;
+		// two thirds of the longest median, which is shorter than the longest edge
+		const double furthest = 2. / 3 * std::sqrt(longestSquared(triangles[t]));
+		grid.forEachNear(middle, [&](int i) {
 			const double reach = rows.places[i].radius + h + skin;
+			if ((listedGrains[i] - middle).squaredNorm() > (reach + furthest) * (reach + furthest)) return; // most, and this spares their feet
 			if (footOn(t, listedGrains[i]).square < reach * reach) near.push_back({i, t});
 		});
+	}
 	std::sort(near.begin(), near.end(), [](const Near& a, const Near& b) { return std::array{a.grain, a.triangle} < std::array{b.grain, b.triangle}; });
 }
 
