@@ -63,15 +63,15 @@ def posterior(target, values, points, found, cloud, tests):
 	return -0.5 * (apart * cho_solve(factor, apart)).sum(axis=0)
 
 
-def trials(calibration, folder, tests, say, curves=None):
+def trials(calibration, folder, tests, say, names=None):
 	"""Say what came out; the list of {parameter: (covered, relative error)}, a trial each.
 
 	:param calibration: whose tests are in ``folder``.
 	:param tests: so many are the laboratory's.
-	:param curves: names of the curves that a trial has; None: all.
+	:param names: of the curves that a trial has; None: all.
 	:raises ConfigError: fewer than two packings are left for a calibration, or a curve is none of its.
 	"""
-	count, wrong = len(calibration.seeds), [name for name in curves or () if name not in calibration.tests]
+	count, wrong = len(calibration.seeds), [name for name in names or () if name not in calibration.tests]
 	if not 1 <= tests <= count - 2:
 		raise ConfigError("--tests", tests, f"leaves fewer than 2 of the {count} packings of a set", f"give 1 to {count - 2}")
 	if wrong:
@@ -79,7 +79,7 @@ def trials(calibration, folder, tests, say, curves=None):
 	drawn = json.loads((pathlib.Path(folder) / GENERATIONS).read_text(encoding="utf-8"))["generations"]
 	sets = [(setName(g, k), numpy.array(point)) for g, points in enumerate(drawn) for k, point in enumerate(points)]
 	series, failed = evaluate.Inside(calibration, folder, None, say).series(sets)
-	used = {name: test for name, test in calibration.tests.items() if curves is None or name in curves}
+	used = {name: test for name, test in calibration.tests.items() if names is None or name in names}
 	sets = [one for one in sets if not failed[one[0]] and all(len(series[one[0]].get(name, ())) == count for name in used)]
 	targets = likelihood.targets({name: test.curve for name, test in used.items()}, {name: test.end for name, test in used.items()})
 	points = numpy.array([point for _, point in sets])

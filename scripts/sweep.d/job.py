@@ -100,7 +100,7 @@ class Job:
 		if not resume:
 			shutil.rmtree(self.test, ignore_errors=True)
 		parent, runner = os.getppid(), os.environ.get(RUNNER)
-		threads = str(self.job.get("threads", 1))
+		threads = str(self.job["threads"])
 		command = [sys.executable, str(LAUNCH), threads, str(MAIN), *self.arguments(resume)]
 		environment = {**os.environ, "OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(MAIN.parent.parent)}
 		said = self.folder / "log.txt"

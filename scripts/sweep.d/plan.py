@@ -46,11 +46,6 @@ def _threads(config):
 	return config.numerics.threads or 1
 
 
-def threadsOf(job):
-	"""Threads that a job of a plan takes; plans of older versions say none."""
-	return job.get("threads", 1)
-
-
 def _costs(config, radii):
 	"""{stage: (processor time [s], bytes on the disk, processor time of the steps in it [s])}, as a test's own estimate has them.
 
@@ -157,6 +152,8 @@ def read(folder):
 	plan = json.loads((pathlib.Path(folder) / NAME).read_text(encoding="utf-8"))
 	if plan.get("format") != FORMAT:
 		raise ValueError(f"plan = '{folder}': is of format {plan.get('format')}, this version reads {FORMAT}; fix: use the version that wrote it")
+	for job in plan["jobs"].values():
+		job.setdefault("threads", 1)  # plans of older versions say none
 	return plan
 
 

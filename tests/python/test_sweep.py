@@ -200,7 +200,7 @@ def runJob(folder, monkeypatch, program, attempts=3, before="done"):
 	monkeypatch.setattr(job, "LAUNCH", folder / "fake.py")
 	monkeypatch.chdir(folder)
 	plan = {"attempts": attempts, "jobs": {"a": {"stage": SPECIMEN, "before": None, "config": {}}}}
-	plan["jobs"]["b"] = {"stage": CONSOLIDATION, "before": "a", "config": {"specimen": {"packing": "stages/a/test/packing.txt", "gradation": None}}}
+	plan["jobs"]["b"] = {"stage": CONSOLIDATION, "before": "a", "threads": 1, "config": {"specimen": {"packing": "stages/a/test/packing.txt", "gradation": None}}}
 	(folder / "stages" / "a").mkdir(parents=True)
 	(folder / "stages" / "a" / "result.json").write_text(json.dumps({"status": before, "error": "no room", "failed_in": SPECIMEN}))
 	made = job.Job(plan, "b")
@@ -236,7 +236,7 @@ def test_afterAFailedStageNothingRuns(tmp_path, monkeypatch):
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGUSR1, signal.SIGKILL])
 def test_aStoppedStageHasNoResultAndLeavesNoProcess(tmp_path, monkeypatch, number):
 	(tmp_path / "fake.py").write_text(FAKE % '(out / "pid").write_text(str(os.getpid())); time.sleep(60)')
-	plan = {"attempts": 3, "jobs": {"a": {"stage": SPECIMEN, "before": None, "config": {"specimen": {"packing": None, "gradation": None}}}}}
+	plan = {"attempts": 3, "jobs": {"a": {"stage": SPECIMEN, "before": None, "threads": 1, "config": {"specimen": {"packing": None, "gradation": None}}}}}
 	(tmp_path / "plan.json").write_text(json.dumps(plan))
 	code = f"import sys; sys.path.insert(0, {str(FOLDER)!r}); import job, pathlib; job.LAUNCH = pathlib.Path('fake.py').absolute(); sys.exit(job.main('a'))"
 	child = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path)
@@ -311,7 +311,7 @@ def pidsOf(folder):
 
 
 def test_testsOfSeveralThreads(tmp_path):
-	"""They share the packing, take as many of the cores, and are refused where there are fewer."""
+	"""They share the packing, take as many of the cores, are refused where there are fewer, and are the same when they are run again."""
 	path = write(tmp_path, axes={"numerics.threads": [1, 2]}, report=False)
 	code, said = call(path, "--out", tmp_path / "out", "--cores", 1)
 	assert code == 2 and "--cores = 1: is less than numerics.threads = 2 of a test; fix: --cores 2 or more" in said
@@ -320,7 +320,9 @@ def test_testsOfSeveralThreads(tmp_path):
 	made = [yaml.safe_load(file.read_text())["made"]["threads"] for file in (tmp_path / "out/stages").glob("shear-*/test/config.yaml")]
 	assert sorted(made) == [1, 2]
 	jobs = plans.read(tmp_path / "out")["jobs"]
-	assert sorted((found["stage"], plans.threadsOf(found)) for found in jobs.values()) == [("consolidation", 1), ("consolidation", 2), ("shear", 1), ("shear", 2), ("specimen", 1)]
+	assert sorted((found["stage"], found["threads"]) for found in jobs.values()) == [("consolidation", 1), ("consolidation", 2), ("shear", 1), ("shear", 2), ("specimen", 1)]
+	code, said = call("--verify", tmp_path / "out" / archive.ARCHIVE, "--runs", 2, "--out", tmp_path / "again", "--cores", 2)
+	assert code == 0 and said.count("equal bit for bit") == 5, said
 
 
 def test_study(tmp_path, monkeypatch, capsys):

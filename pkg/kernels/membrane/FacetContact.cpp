@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 namespace hexmembrane {
 
@@ -240,13 +241,13 @@ void FacetContact::makeLists(const SphereRows& rows)
 	anyLong = true; // ask again when there are none
 	if (rows.count == 0) return;
 	limit = actingLength(radius, h, smallest);
-	std::vector<int> mayAct;
-	double size = 0; // of the largest of them
+	std::vector<std::pair<int, double>> mayAct; // and their longest edges
+	double size = 0;                            // of the largest of them
 	for (std::size_t t = 0; t < triangles.size(); ++t) {
 		if (torn[t]) continue;
 		const double longest = std::sqrt(longestSquared(triangles[t]));
 		if (!(longest > limit - skin)) continue;
-		mayAct.push_back(int(t));
+		mayAct.push_back({int(t), longest});
 		size = std::max(size, longest);
 	}
 	anyLong = !mayAct.empty();
@@ -259,10 +260,11 @@ void FacetContact::makeLists(const SphereRows& rows)
 	}
 	CellGrid grid(low, high, size + largest + h + skin);
 	grid.fill(listedGrains);
-	for (const int t : mayAct) {
+	for (const auto& [number, longest] : mayAct) {
+		const int t = number;
 		const Vec3 middle = (at(triangles[t][0]) + at(triangles[t][1]) + at(triangles[t][2])) / 3;
 		// two thirds of the longest median, which is shorter than the longest edge
-		const double furthest = 2. / 3 * std::sqrt(longestSquared(triangles[t]));
+		const double furthest = 2. / 3 * longest;
 		grid.forEachNear(middle, [&](int i) {
 			const double reach = rows.places[i].radius + h + skin;
 			if ((listedGrains[i] - middle).squaredNorm() > (reach + furthest) * (reach + furthest)) return; // most, and this spares their feet

@@ -24,7 +24,7 @@ STEP, GRAIN_STEP, MEMBRANE_STEP, SHEAR_SPRINGS, REFERENCE = 25e-6, 8.2e-8, 4.2e-
 #: More grains than CACHED leave the processor's cache: a grain's part grows by GROWTH for each factor e. A step took 4.4 ms with 30,000 grains and 17,000 membrane spheres,
 #: 18.2 ms with 100,000 and 67,000 (AMD EPYC, 32 MB of shared cache, nothing else running, 27 November 2026).
 CACHED, GROWTH = 7000, 0.32
-#: Share of a step that a thread more takes as well: 0.11 and 0.20 of it in the study's membranes of 0.25 and 0.5 mm (scripts/bench.d/README.md).
+#: Share of a step that a thread more takes as well: 0.11 and 0.17 of it in the study's membranes of 0.25 and 0.5 mm (scripts/bench.d/README.md).
 UNDIVIDED = 0.15
 #: Memory [bytes]: of YADE, Python and the picture; of a sphere with its contacts. Measured with 3,416 and 15,328 spheres in both tiers: 300 MB, 4 kB, and 80 MB for the picture.
 PROGRAM, SPHERE = 400e6, 6e3
