@@ -109,7 +109,7 @@ def trials(calibration, folder, tests, say, names=None):
 
 
 def make(calibration, folder, say):
-	"""Run the test of TRUTH and PACKING of each curve of a calibration, in a folder, and write its curve with noise of reading at its file's name there."""
+	"""Run the test of TRUTH and PACKING of each curve of a calibration, in a folder, and write its curve with noise of reading there, as CURVE.csv."""
 	random = numpy.random.default_rng(PACKING)
 	runs = [
 		studyfile.Run(name, {}, PACKING, derived(test.config, studyfile.nested({**TRUTH, studyfile.SEED: PACKING}))) for name, test in calibration.tests.items()
