@@ -80,17 +80,18 @@ def coreHours(jobs):
 
 
 def announce(plan, folder, cores, say):
-	"""Say what there is to do and what it will cost; whether there is anything."""
+	"""Say what there is to do and what it will cost; the seconds by the clock that are stated, 0 when there is nothing."""
 	left = {name: found for name, found in plan["jobs"].items() if plans.result(folder, name) is None}
 	stages = ", ".join(f"{sum(found['stage'] == stage for found in plan['jobs'].values())} {name}" for stage, name in zip(job.PRODUCTS, ("packings", "consolidated states", "tests sheared")))
 	say(f"{plan['title']}: {len(plan['runs'])} runs; {stages}")
 	hours = coreHours(left.values())
 	longest = max((coreHours([found]) / found["threads"] for found in left.values()), default=0)
 	size, free = sum(found["bytes"] for found in left.values()), shutil.disk_usage(folder if folder.exists() else pathlib.Path.cwd()).free
-	say(f"to do: {len(left)} stages, about {hours:.2g} core hours, {clock(3600 * max(hours / cores, longest))} on {cores} cores, {_size(size)} on the disk of {_size(free)} free")
+	seconds = 3600 * max(hours / cores, longest)
+	say(f"to do: {len(left)} stages, about {hours:.2g} core hours, {clock(seconds)} on {cores} cores, {_size(size)} on the disk of {_size(free)} free")
 	if size > free:
 		say("WARNING: the disk will be full before the study is done; fix: --out on another one")
-	return bool(left)
+	return seconds
 
 
 def _snakemake(arguments):
@@ -115,8 +116,8 @@ def _end(child):
 			return
 
 
-def _run(plan, folder, arguments):
-	"""Snakemake over the plan, with a line of progress; its exit code."""
+def _run(plan, folder, arguments, seconds):
+	"""Snakemake over the plan, with a line of progress that begins with the ``seconds`` stated; its exit code."""
 	weights = {name: found["seconds"] for name, found in plan["jobs"].items()}
 	total = sum(weights.values())
 	environment = {**os.environ, "PYTHONWARNINGS": "ignore"}
@@ -124,7 +125,7 @@ def _run(plan, folder, arguments):
 		slurm.cancel(folder)  # of a call that was killed
 	if not arguments.slurm and not arguments.profile:
 		environment[job.RUNNER] = str(os.getpid())
-	with open(folder / LOG, "ab") as log, Progress("sweep") as progress:
+	with open(folder / LOG, "ab") as log, Progress("sweep", expected=seconds) as progress:
 		own = {"start_new_session": True, "preexec_fn": job.dieWithParent}
 		child = subprocess.Popen(_snakemake(arguments), cwd=folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment, **own)
 		ended = {}
@@ -188,8 +189,8 @@ def advance(plan, inputs, folder, arguments, say):
 		raise ConfigError("--slurm", "sbatch", "is not found or does not answer on this machine", "call it where jobs are submitted, such as a cluster's login node, or leave --slurm out")
 	plans.write(plan, inputs, folder)
 	before = {name for name in plan["jobs"] if plans.result(folder, name)}
-	if announce(plan, folder, arguments.cores, say):
-		code = _run(plan, folder, arguments)
+	if seconds := announce(plan, folder, arguments.cores, say):
+		code = _run(plan, folder, arguments, seconds)
 		took = [found for name in set(plan["jobs"]) - before if (found := plans.result(folder, name))]
 		say(f"took {sum(found['processor_seconds'] for found in took) / 3600:.2g} core hours for {len(took)} stages")
 		if any(plans.result(folder, name) is None for name in plan["jobs"]):

@@ -146,6 +146,7 @@ def test_clouds(whole, tmp_path):
 	assert 0.25 < seen["porosity"].mean() < 0.6 and 2 < seen["coordination"].mean() < 9 and 0.005 < seen["shear"].mean() < 0.06
 	assert 0 < seen["displacement"].max() < 1.5
 	assert clouds.bandSection(tmp_path) is None
+	assert [f"{strain:g}" for strain in clouds.strainsOf(whole)] == ["0", "0.01", "0.02"]
 
 
 def test_cloudsOfAKnownField(tmp_path):

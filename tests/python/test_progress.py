@@ -46,6 +46,18 @@ def test_timeLeftOfResumedStage(time):
 	assert shown.left(0.75) == pytest.approx(10)
 
 
+def test_statedTimeComesFirst(time):
+	"""The stated time is told until work is done, is no jump when a lump of it ends, and gives way to what was measured."""
+	shown = Progress("sweep", stream=io.StringIO(), expected=1000.0)
+	shown.update(0.2)
+	assert shown.left(0.2) == pytest.approx(1000)
+	time[0] += 20  # nothing has ended
+	assert shown.left(0.2) == pytest.approx(1000 + 20 / progress.STATED_SHARE)
+	time[0] += 780  # half of the rest took 800 s: 500 s more as stated, 800 s as measured
+	assert 700 < shown.left(0.6) < 800
+	assert shown.left(1.0) == 0
+
+
 def test_barOnTerminal():
 	stream = Terminal()
 	with Progress("shear", stream=stream) as shown:

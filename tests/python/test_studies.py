@@ -4,6 +4,7 @@
 import contextlib
 import importlib.util
 import io
+import json
 import pathlib
 import re
 
@@ -127,7 +128,11 @@ def test_insideTheStudysTests(O, tmp_path, capsys):
 		run(configuration.derived(config, {"boundary": kind, **short}), tmp_path / kind, quiet=True)
 		rows.append(f"{number:04d},boundary,{kind},150000.0,-,-,1,done,{kind}")
 		rows.append(f"{number + 4:04d},porosity,{kind},-,-,0.4,{number},done,{kind}")
+		(tmp_path / "stages" / kind).mkdir(parents=True)
+		(tmp_path / "stages" / kind / "result.json").write_text('{"processor_seconds": 7.5}')
 	(tmp_path / "runs.csv").write_text("\n".join(rows) + "\n")
+	stages = {row.split(",")[0]: {"specimen": "packing", "shear": row.split(",")[2]} for row in rows[1:]}
+	(tmp_path / "plan.json").write_text(json.dumps({"runs": [{"name": name, "stages": one} for name, one in stages.items()]}))
 	inside = loaded("examples/paper/study/inside.py")
 	out = tmp_path / "out"
 	inside.main([str(tmp_path), str(out)])
@@ -140,7 +145,9 @@ def test_insideTheStudysTests(O, tmp_path, capsys):
 	compare = loaded("examples/paper/study/compare.py")
 	compare.main([str(tmp_path), str(out)])
 	lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in capsys.readouterr().out.splitlines() if line.startswith("|")]
-	assert [line[:2] for line in lines[:: len(compare.TOLD)]] == [["boundary", "150000.0, membrane"], ["boundary", "150000.0, wall"], ["porosity", "0.4, membrane"], ["porosity", "0.4, wall"]]
+	names = ["150 kPa, membrane", "150 kPa, wall"], ["0.4, membrane", "0.4, wall"]
+	assert [line[0] for line in lines] == ["boundary", "---", *names[0], "porosity", "---", *names[1]]
+	assert all(len(line) == len(compare.TOLD) + 2 and (line[1], line[-1]) == ("1", "7.5") for line in lines if line[0] in sum(names, []))
 	assert not (out / "compare.png").exists()  # of one pair there is no interval
 	(tmp_path / "runs.csv").write_text(rows[0] + "\n")
 	for script, told in ((inside, "no test of the set 'boundary' is done; fix: "), (compare, "no test is done; fix: ")):
@@ -163,9 +170,15 @@ def test_comparisonsOfTheStudy(tmp_path):
 			of = {"set": "boundary", "boundary": kind, "consolidation.pressure": "100000.0", "seed": seed}
 			tests.append({**of, "told": dict.fromkeys(compare.TOLD, factor * base)})
 	rows = {(row["case"], row["quantity"]): row for row in compare.compared("boundary", tests)}
-	wall = rows["100000.0, wall", "peak_q"]
+	wall = rows["100 kPa, wall", "peak_q"]
 	assert (wall["tests"], wall["pairs"], wall["differs"]) == (3, 3, "yes") and wall["difference"] == pytest.approx(10) and wall["difference_half_width"] == pytest.approx(0, abs=1e-9)
-	assert wall["mean"] == pytest.approx(132) and rows["100000.0, wall", "end_porosity"]["difference"] == pytest.approx(12)
-	assert rows["100000.0, membrane", "peak_q"]["pairs"] == 0
+	assert wall["mean"] == pytest.approx(132) and rows["100 kPa, wall", "end_porosity"]["difference"] == pytest.approx(12)
+	assert rows["100 kPa, membrane", "peak_q"]["pairs"] == 0
+	assert rows["100 kPa, wall", "end_volumetric_strain"]["difference_unit"] == "points"
+	assert (compare.written(372.34, 7.04), compare.written(0.40883, 0.00083), compare.written(4.0, float("nan"), "+")) == ("372.3 +- 7.0", "0.40883 +- 0.00083", "+4")
+	told = {"mean": 132.0, "half_width": 5.0, "pairs": 3, "difference": -10.0, "difference_half_width": 2.0, "difference_unit": "%"}
+	assert compare.cell({**told, "differs": "yes"}) == "132.0 +- 5.0 **(-10.0 +- 2.0 %)**"
+	assert compare.cell({**told, "differs": "no", "difference_unit": "-"}) == "132.0 +- 5.0 (-10.0 +- 2.0)"
+	assert compare.cell({**told, "pairs": 1}) == "132.0 +- 5.0"
 	compare.draw(list(rows.values()), tmp_path / "compare.png")
 	assert min(Image.open(tmp_path / "compare.png").size) > 100

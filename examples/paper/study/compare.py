@@ -4,14 +4,17 @@
 	scripts/yade -x examples/paper/study/compare.py STUDY OUT
 
 STUDY: the folder of scripts/sweep of study.yaml; tests that are not done are left out. OUT/compare.csv: a row a case and quantity: mean, its 95 % half width, the
-mean difference from the reference and its 95 % half width, both of pairs by seed. OUT/compare.png: the differences as points with intervals.
+mean difference from the reference and its 95 % half width, both of pairs by seed. OUT/compare.png: the differences as points with intervals. Printed: a table a
+comparison, the mean and behind it the difference.
 
-A difference is told ("differs") where its interval leaves out zero. Of many at once, one in twenty is told by chance.
+A difference is told ("differs", bold in the tables) where its interval leaves out zero. Of many at once, one in twenty is told by chance.
 """
 
 import argparse
 import collections
 import csv
+import json
+import math
 import pathlib
 import sys
 
@@ -23,7 +26,7 @@ from matplotlib.figure import Figure
 
 #: A proportional limit is q where it has left the line through its first LINE of strain by LEFT of that line.
 LINE, LEFT = 0.002, 0.1
-#: Quantity -> (factor to the unit told, unit, whether its difference is relative).
+#: Quantity -> (factor to the unit told, unit, whether its difference is relative). processor_seconds: consolidation, of its own or shared, and shear.
 TOLD = {
 	"peak_q": (1e-3, "kPa", True),
 	"strain_at_peak": (100, "%", False),
@@ -31,11 +34,16 @@ TOLD = {
 	"end_q": (1e-3, "kPa", True),
 	"end_volumetric_strain": (100, "%", False),
 	"end_porosity": (1, "-", False),
+	"processor_seconds": (1, "s", True),
 }
+#: Unit of an absolute difference of what has a unit: percentage points are no relative difference.
+POINTS = {"%": "points"}
 #: What is drawn.
 DRAWN = ("peak_q", "proportional_limit", "end_q", "end_volumetric_strain")
 OWN = {"consolidation.pressure": "100000.0", "membrane.particleRadius": "0.00075"}
 SETTINGS = ("centre", "cube", "open loop", "centre in an open loop", "equal springs", "damping", "fixed rings", "no bending", "axial by platen", "as the study")
+#: How a case's value is told: key -> (factor, unit).
+NAMED = {"consolidation.pressure": (1e-3, "kPa"), "membrane.particleRadius": (1e3, "mm"), "specimen.porosity": (1, "")}
 #: Comparison -> (sets, what names a case, what a case and its reference share, values of the reference, its set).
 COMPARISONS = {
 	"boundary": (("boundary",), ("boundary",), ("consolidation.pressure",), {"boundary": "membrane"}, "boundary"),
@@ -58,12 +66,18 @@ def proportionalLimit(strain, q):
 	return float(q[row - 1] + share * (q[row] - q[row - 1]))
 
 
-def told(path):
+def processorSeconds(study, stages):
+	"""What the stages of a test took after its packing [s]."""
+	results = (study / "stages" / name / "result.json" for stage, name in stages.items() if stage != "specimen")
+	return sum(json.loads(path.read_text(encoding="utf-8"))["processor_seconds"] for path in results)
+
+
+def told(path, seconds):
 	"""The quantities TOLD of a test's records, in their units."""
 	table = records.read(path)
 	shear = records.sheared(table)
 	table = {name: column[shear] for name, column in table.items() if name != "stage"}
-	values = {**quantities(table), "proportional_limit": proportionalLimit(table["axial_strain"], table["q"])}
+	values = {**quantities(table), "proportional_limit": proportionalLimit(table["axial_strain"], table["q"]), "processor_seconds": seconds}
 	return {name: factor * values[name] for name, (factor, _, _) in TOLD.items()}
 
 
@@ -71,9 +85,16 @@ def read(study):
 	"""The done tests: rows of runs.csv with ``told``."""
 	with open(study / "runs.csv", encoding="utf-8", newline="") as file:
 		rows = [row for row in csv.DictReader(file) if row["status"] == "done"]
+	stages = {run["name"]: run["stages"] for run in json.loads((study / "plan.json").read_text(encoding="utf-8"))["runs"]}
 	for row in rows:
-		row["told"] = told(study / row["folder"] / "records.csv")
+		row["told"] = told(study / row["folder"] / "records.csv", processorSeconds(study, stages[row["run"]]))
 	return rows
+
+
+def named(key, value):
+	"""A value of a case as it is told, such as '100 kPa'."""
+	factor, unit = NAMED.get(key, (None, ""))
+	return value if factor is None else f"{factor * float(value):g} {unit}".strip()
 
 
 def compared(name, tests):
@@ -88,12 +109,12 @@ def compared(name, tests):
 		pairs = [(test, bases[key]) for test in of if (key := (*(test[key] for key in shared), test["seed"])) in bases and bases[key] is not test]
 		for quantity, (_, unit, relative) in TOLD.items():
 			values = numpy.array([test["told"][quantity] for test in of])
-			row = {"comparison": name, "case": ", ".join(case), "quantity": quantity, "unit": unit, "tests": len(of), "mean": values.mean(), "half_width": float(halfWidth(values))}
+			row = {"comparison": name, "case": ", ".join(map(named, (*shared, *naming), case)), "quantity": quantity, "unit": unit, "tests": len(of), "mean": values.mean(), "half_width": float(halfWidth(values))}
 			change = numpy.array([a["told"][quantity] - b["told"][quantity] for a, b in pairs])
 			if relative:
 				change = 100 * change / numpy.array([b["told"][quantity] for _, b in pairs])
 			some = len(change) > 1
-			row.update(pairs=len(pairs), difference_unit="%" if relative else unit, difference=change.mean() if some else numpy.nan)
+			row.update(pairs=len(pairs), difference_unit="%" if relative else POINTS.get(unit, unit), difference=change.mean() if some else numpy.nan)
 			row["difference_half_width"] = float(halfWidth(change)) if some else numpy.nan
 			row["differs"] = ("yes" if abs(row["difference"]) > row["difference_half_width"] else "no") if some else "-"
 			yield row
@@ -124,6 +145,33 @@ def draw(rows, path):
 	figure.savefig(path, dpi=110, metadata={"Software": "hexmembrane"})
 
 
+def written(mean, half, sign=""):
+	"""'MEAN +- HALF' with two digits of the half width; without one, four of the mean."""
+	if not math.isfinite(half) or half <= 0:
+		return f"{mean:{sign}.4g}"
+	decimals = max(0, 1 - math.floor(math.log10(half)))
+	return f"{mean:{sign}.{decimals}f} +- {half:.{decimals}f}"
+
+
+def cell(row):
+	"""The mean, and the difference in brackets where there is one, bold where it is told."""
+	text = written(row["mean"], row["half_width"])
+	if row["pairs"] < 2:
+		return text
+	unit = row["difference_unit"] if row["difference_unit"] in ("%", *POINTS.values()) else ""
+	change = f"({written(row['difference'], row['difference_half_width'], '+')} {unit}".rstrip() + ")"
+	return f"{text} **{change}**" if row["differs"] == "yes" else f"{text} {change}"
+
+
+def table(rows):
+	"""Lines of a comparison's table in Markdown: a row a case, a column a quantity."""
+	yield f"| {rows[0]['comparison']} | tests | " + " | ".join(f"{name.replace('_', ' ')} [{unit}]" for name, (_, unit, _) in TOLD.items()) + " |"
+	yield "| --- " * (len(TOLD) + 2) + "|"
+	for case in dict.fromkeys(row["case"] for row in rows):
+		of = [row for row in rows if row["case"] == case]
+		yield f"| {case} | {of[0]['tests']} | " + " | ".join(map(cell, of)) + " |"
+
+
 def main(argv):
 	parser = argparse.ArgumentParser(prog="compare.py", description="Means and differences of the study's tests.")
 	parser.add_argument("study", metavar="STUDY", type=pathlib.Path, help="the folder of scripts/sweep")
@@ -136,9 +184,8 @@ def main(argv):
 	arguments.out.mkdir(parents=True, exist_ok=True)
 	tables.writeRows(arguments.out / "compare.csv", rows)
 	draw(rows, arguments.out / "compare.png")
-	for row in rows:
-		change = f"{row['difference']:+.3g} +- {row['difference_half_width']:.2g} {row['difference_unit']}, {row['pairs']} pairs" if row["pairs"] > 1 else "-"
-		print(f"| {row['comparison']} | {row['case']} | {row['quantity']} | {row['mean']:.4g} +- {row['half_width']:.2g} {row['unit']} ({row['tests']}) | {change} |")
+	for name in dict.fromkeys(row["comparison"] for row in rows):
+		print("\n".join(table([row for row in rows if row["comparison"] == name])), end="\n\n")
 
 
 if __name__ == "__main__":

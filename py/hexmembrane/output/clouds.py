@@ -178,7 +178,7 @@ def writeVtk(path, one, section):
 def strainsOf(folder):
 	"""The axial strains at which a test kept its fields, in fields.h5, to 1e-4."""
 	with fields.opened(pathlib.Path(folder) / "fields.h5") as file:
-		return [round(float(file[name].attrs["axial_strain"]), 4) for name in fields.states(file)]
+		return [round(float(file[name].attrs["axial_strain"]), 4) + 0.0 for name in fields.states(file)]  # + 0.0: no "-0 %" in a title
 
 
 def draw(folders, out, strains=(None,), section=None, quantities=tuple(QUANTITIES), names=None):

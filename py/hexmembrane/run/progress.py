@@ -41,6 +41,10 @@ def clock(seconds):
 	return f"{hours}:{minutes:02d}:{seconds:02d}" if hours else f"{minutes}:{seconds:02d}"
 
 
+#: Share of the work that a stated time counts as; work that comes in lumps is then no jump in the time left.
+STATED_SHARE = 0.1
+
+
 class Progress:
 	"""One stage's progress.
 
@@ -48,10 +52,11 @@ class Progress:
 	:param quiet: show nothing (messages by :meth:`say` included).
 	:param stream: where to; a terminal gets a bar.
 	:param every: seconds between plain lines, at least.
+	:param expected: seconds that all of what is left at the first :meth:`update` was stated to take, if they were.
 	"""
 
-	def __init__(self, stage, quiet=False, stream=None, every=5.0):
-		self.stage, self.quiet, self.every = stage, quiet, every
+	def __init__(self, stage, quiet=False, stream=None, every=5.0, expected=None):
+		self.stage, self.quiet, self.every, self.expected = stage, quiet, every, expected
 		self.stream = Steady(sys.stderr if stream is None else stream)
 		self.started = time.monotonic()
 		self.begun = None
@@ -70,10 +75,18 @@ class Progress:
 			)
 
 	def left(self, done):
-		"""Seconds left when a share ``done`` of the stage is behind us, None when not known yet; a resumed share costs nothing."""
-		if self.begun is None or done <= self.begun:
+		"""Seconds left when a share ``done`` of the stage is behind us, None when not known yet; a resumed share costs nothing.
+
+		A time that was stated counts as STATED_SHARE of the work, done at that pace.
+		"""
+		if self.begun is None:
 			return None
-		return (time.monotonic() - self.started) * (1 - done) / (done - self.begun)
+		stated = STATED_SHARE * (1 - self.begun) if self.expected is not None else 0.0
+		behind = done - self.begun + stated
+		if behind <= 0:
+			return None
+		took = time.monotonic() - self.started + (STATED_SHARE * self.expected if stated else 0.0)
+		return took * (1 - done) / behind
 
 	def update(self, done, **state):
 		"""Show the share ``done`` (0..1) and the values in ``state`` (name -> text)."""
