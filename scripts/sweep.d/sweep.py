@@ -171,7 +171,8 @@ def _tell(table, folder, say):
 	odd = [row for row in table[1:] if row[column] != "done"]
 	for row in odd:
 		say(f"run {row[0]}: {row[column]}")
-	say(f"{len(table) - 1 - len(odd)} of {len(table) - 1} runs are done; {folder / results.RUNS}, {results.MEANS}, {results.RECORDS}, study.png, {results.PROVENANCE}, {archive.ARCHIVE}")
+	pictures = "study.png" if (folder / "study.png").exists() else "study-SET.png"
+	say(f"{len(table) - 1 - len(odd)} of {len(table) - 1} runs are done; {folder / results.RUNS}, {results.MEANS}, {results.RECORDS}, {pictures}, {results.PROVENANCE}, {archive.ARCHIVE}")
 	if odd:
 		say(f"what Snakemake said: {folder / LOG}; a stage's own words: {folder / plans.STAGES_FOLDER}/STAGE/log.txt; --again tries failed ones again")
 	return 1 if odd else 0

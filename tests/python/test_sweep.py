@@ -23,6 +23,7 @@ FOLDER = ROOT / "scripts" / "sweep.d"
 sys.path.insert(0, str(FOLDER))
 import archive  # noqa: E402
 import dependence  # noqa: E402
+import figure  # noqa: E402
 import job  # noqa: E402
 import plan as plans  # noqa: E402
 import results  # noqa: E402
@@ -53,6 +54,23 @@ def write(folder, **study):
 	(folder / "base.yaml").write_text(yaml.safe_dump(BASE))
 	(folder / "study.yaml").write_text(yaml.safe_dump({"base": "base.yaml", **study}, sort_keys=False))
 	return folder / "study.yaml"
+
+
+@pytest.mark.parametrize(
+	"key, value, told",
+	[
+		("consolidation.pressure", 5e4, "pressure 50 kPa"),
+		("specimen.emod", 6e7, "emod 60 MPa"),
+		("membrane.particleRadius", 0.25e-3, "particleRadius 0.25 mm"),
+		("shear.velocity", 0.02, "velocity 0.02 m/s"),
+		("specimen.friction", 0.5, "friction 0.5"),
+		("consolidation.pressure", "-", "pressure -"),
+		("boundary", "wall", "boundary wall"),
+		("measure.bands", True, "bands True"),
+	],
+)
+def test_namesInTheFigure(key, value, told):
+	assert figure._short(key, value) == told
 
 
 # What depends on which key
