@@ -151,9 +151,10 @@ def test_insideTheStudysTests(O, tmp_path, capsys):
 	assert not (out / "compare.png").exists()  # of one pair there is no interval
 	(tmp_path / "runs.csv").write_text(rows[0] + "\n")
 	for script, told in ((inside, "no test of the set 'boundary' is done; fix: "), (compare, "no test is done; fix: ")):
-		with pytest.raises(SystemExit):
-			script.main([str(tmp_path), str(out)])
-		assert told in capsys.readouterr().err
+		for study in (tmp_path, tmp_path / "stages"):  # nothing done; no study
+			with pytest.raises(SystemExit):
+				script.main([str(study), str(out)])
+			assert told in capsys.readouterr().err
 
 
 def test_comparisonsOfTheStudy(tmp_path):

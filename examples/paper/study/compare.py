@@ -177,10 +177,10 @@ def main(argv):
 	parser.add_argument("study", metavar="STUDY", type=pathlib.Path, help="the folder of scripts/sweep")
 	parser.add_argument("out", metavar="OUT", type=pathlib.Path)
 	arguments = parser.parse_args(argv)
-	tests = read(arguments.study)
+	tests = read(arguments.study) if (arguments.study / "runs.csv").is_file() else []
 	rows = [row for name in COMPARISONS for row in compared(name, tests)]
 	if not rows:
-		parser.exit(1, f"compare.py: {arguments.study}: no test is done; fix: run scripts/sweep on study.yaml\n")
+		parser.exit(1, f"compare.py: {arguments.study}: no test is done; fix: give the folder of a scripts/sweep of study.yaml that has ended\n")
 	arguments.out.mkdir(parents=True, exist_ok=True)
 	tables.writeRows(arguments.out / "compare.csv", rows)
 	draw(rows, arguments.out / "compare.png")

@@ -126,9 +126,9 @@ def main(argv):
 	parser.add_argument("study", metavar="STUDY", type=pathlib.Path, help="the folder of scripts/sweep")
 	parser.add_argument("out", metavar="OUT", type=pathlib.Path)
 	arguments = parser.parse_args(argv)
-	out, tests = arguments.out, read(arguments.study)
+	out, tests = arguments.out, read(arguments.study) if (arguments.study / "runs.csv").is_file() else []
 	if not tests:
-		parser.exit(1, f"inside.py: {arguments.study}: no test of the set '{SET}' is done; fix: run scripts/sweep on study.yaml\n")
+		parser.exit(1, f"inside.py: {arguments.study}: no test of the set '{SET}' is done; fix: give the folder of a scripts/sweep of study.yaml that has ended\n")
 	out.mkdir(parents=True, exist_ok=True)
 	told = [test.told() for test in tests]
 	tables.writeRows(out / "tests.csv", [{"test": test.name, **one} for test, one in zip(tests, told)])
