@@ -177,6 +177,7 @@ def test_comparisonsOfTheStudy(tmp_path):
 	assert rows["100 kPa, membrane", "peak_q"]["pairs"] == 0
 	assert rows["100 kPa, wall", "end_volumetric_strain"]["difference_unit"] == "points"
 	assert (compare.written(372.34, 7.04), compare.written(0.40883, 0.00083), compare.written(4.0, float("nan"), "+")) == ("372.3 +- 7.0", "0.40883 +- 0.00083", "+4")
+	assert compare.written(-0.001, 0.34, "+") == "+0.00 +- 0.34"
 	told = {"mean": 132.0, "half_width": 5.0, "pairs": 3, "difference": -10.0, "difference_half_width": 2.0, "difference_unit": "%"}
 	assert compare.cell({**told, "differs": "yes"}) == "132.0 +- 5.0 **(-10.0 +- 2.0 %)**"
 	assert compare.cell({**told, "differs": "no", "difference_unit": "-"}) == "132.0 +- 5.0 (-10.0 +- 2.0)"

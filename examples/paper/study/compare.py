@@ -150,7 +150,7 @@ def written(mean, half, sign=""):
 	if not math.isfinite(half) or half <= 0:
 		return f"{mean:{sign}.4g}"
 	decimals = max(0, 1 - math.floor(math.log10(half)))
-	return f"{mean:{sign}.{decimals}f} +- {half:.{decimals}f}"
+	return f"{round(mean, decimals) + 0.0:{sign}.{decimals}f} +- {half:.{decimals}f}"  # + 0.0: no minus before 0
 
 
 def cell(row):
