@@ -7,8 +7,7 @@ Lists of stages pass through a strain several times: of a study that has one, th
 import collections
 
 import numpy
-from hexmembrane.configuration import Config
-from hexmembrane.configuration.schema import table as tableOfKeys
+from hexmembrane.configuration import Config, schema
 from hexmembrane.report.summary import CONFIDENCE, halfWidth
 from results import endsOf, group
 from studyfile import SET
@@ -18,20 +17,9 @@ _POINTS, _MOST_COLUMNS, _MOST_NAMED = 201, 6, 10
 _LINES = (("q", 1e-3, "deviatoric stress of the soil q [kPa]"), ("volumetric_strain_volume", 100, "volumetric strain [%]\n(dilation positive)"))
 
 
-#: Key -> its unit; SI unit -> the larger and smaller ones that its values are told in, the largest first.
-_UNITS = {key: unit for key, _, unit, *_ in tableOfKeys(Config)}
-_SCALES = {"Pa": ((1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1, "Pa")), "m": ((1, "m"), (1e-3, "mm"))}
-
-
 def _short(key, value):
 	"""A value of an axis as it is named in the figure, such as 'pressure 50 kPa'."""
-	name = key.rpartition(".")[2]
-	if not isinstance(value, (int, float)) or isinstance(value, bool):
-		return f"{name} {value}"
-	unit = _UNITS.get(key, "")
-	scales = _SCALES.get(unit, ((1, unit),))
-	factor, unit = next((scale for scale in scales if abs(value) >= scale[0]), scales[-1])
-	return f"{name} {value / factor:g} {unit}".rstrip(" -")
+	return f"{key.rpartition('.')[2]} {schema.told(Config, key, value)}"
 
 
 def drawAll(plan, rows, folder):

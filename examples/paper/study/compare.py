@@ -19,6 +19,7 @@ import pathlib
 import sys
 
 import numpy
+from hexmembrane.configuration import Config, schema
 from hexmembrane.output import records, tables
 from hexmembrane.report.summary import halfWidth, quantities
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -42,8 +43,6 @@ POINTS = {"%": "points"}
 DRAWN = ("peak_q", "proportional_limit", "end_q", "end_volumetric_strain")
 OWN = {"consolidation.pressure": "100000.0", "membrane.particleRadius": "0.00075"}
 SETTINGS = ("centre", "cube", "open loop", "centre in an open loop", "equal springs", "damping", "fixed rings", "no bending", "axial by platen", "as the study")
-#: How a case's value is told: key -> (factor, unit).
-NAMED = {"consolidation.pressure": (1e-3, "kPa"), "membrane.particleRadius": (1e3, "mm"), "specimen.porosity": (1, "")}
 #: Comparison -> (sets, what names a case, what a case and its reference share, values of the reference, its set).
 COMPARISONS = {
 	"boundary": (("boundary",), ("boundary",), ("consolidation.pressure",), {"boundary": "membrane"}, "boundary"),
@@ -92,9 +91,11 @@ def read(study):
 
 
 def named(key, value):
-	"""A value of a case as it is told, such as '100 kPa'."""
-	factor, unit = NAMED.get(key, (None, ""))
-	return value if factor is None else f"{factor * float(value):g} {unit}".strip()
+	"""A value of a case, a text of runs.csv, as it is told, such as '100 kPa'."""
+	try:
+		return schema.told(Config, key, float(value))
+	except ValueError:  # a set's name, a boundary
+		return value
 
 
 def compared(name, tests):

@@ -302,6 +302,25 @@ def table(cls, path=""):
 	return rows
 
 
+#: SI unit -> the units that a value is told in, the largest first.
+_TOLD_IN = {"Pa": ((1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1, "Pa")), "m": ((1, "m"), (1e-3, "mm"))}
+
+
+@functools.lru_cache
+def _units(cls):
+	return {name: unit for name, _, unit, *_ in table(cls)}
+
+
+def told(cls, path, value):
+	"""A value of the key at a path as it is read best, such as '50 kPa' and '0.75 mm'; what is no number as it is."""
+	if not isinstance(value, (int, float)) or isinstance(value, bool):
+		return str(value)
+	unit = _units(cls).get(path, "")
+	units = _TOLD_IN.get(unit, ((1, "" if unit == "-" else unit),))
+	factor, unit = next((one for one in units if abs(value) >= one[0]), units[-1])
+	return f"{value / factor:g} {unit}".rstrip()
+
+
 def _entry(annotation):
 	"""The class of the entries of a list of sections, None for any other type."""
 	kind = next(iter(typing.get_args(_bare(annotation)[0])), None)
